@@ -1,0 +1,5 @@
+//! Files of moldwarp: scenes and meshes in, results out. The solver itself knows of none.
+
+pub mod mesh;
+pub mod output;
+pub mod scene;

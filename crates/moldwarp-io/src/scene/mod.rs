@@ -1,0 +1,1 @@
+//! From scene.toml to a checked plan.

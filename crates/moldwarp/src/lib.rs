@@ -1,0 +1,22 @@
+//! moldwarp: a dynamic material point method for geomechanics.
+//!
+//! Particles carry the material through a mesh of four-node tetrahedra; the equation of motion
+//! is solved on the mesh's nodes with explicit steps (Jassim, Hamad and Vermeer 2011). A
+//! [`Plan`] says what is to be computed, a [`Simulation`] computes it; [`step`] is the method.
+//!
+//! Conventions: SI units; tension positive; Voigt order xx, yy, zz, xy, yz, zx with engineering
+//! shear strains.
+
+pub mod boundary;
+pub mod material;
+pub mod mesh;
+pub mod plan;
+
+pub use material::Material;
+pub use mesh::Mesh;
+pub use plan::Plan;
+
+/// A point, a vector: x, y, z.
+pub type Vec3 = glam::DVec3;
+/// A second-order tensor.
+pub type Mat3 = glam::DMat3;

@@ -1,0 +1,80 @@
+//! Volumes, gradients and altitudes of linear tetrahedra.
+
+use super::Mesh;
+use crate::Vec3;
+use rayon::prelude::*;
+
+/// Gradients of N₁, N₂, N₃ (1/m) and signed volume (m³) of a tetrahedron.
+pub fn tetrahedron_gradients(x: [Vec3; 4]) -> ([Vec3; 3], f64) {
+    let [a, b, c] = [x[1] - x[0], x[2] - x[0], x[3] - x[0]];
+    let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
+    let det = a.dot(bc);
+    ([bc / det, ca / det, ab / det], det / 6.0)
+}
+
+/// Barycentric coordinates of `x` in the element whose node 0 lies at `origin`.
+#[inline]
+pub fn barycentric(origin: Vec3, gradients: &[Vec3; 3], x: Vec3) -> [f64; 4] {
+    let d = x - origin;
+    let (b, c, e) = (
+        gradients[0].dot(d),
+        gradients[1].dot(d),
+        gradients[2].dot(d),
+    );
+    [1.0 - b - c - e, b, c, e]
+}
+
+impl Mesh {
+    /// Barycentric coordinates of `x` in element `e`; they are the shape functions there.
+    #[inline]
+    pub fn barycentric(&self, e: usize, x: Vec3) -> [f64; 4] {
+        barycentric(self.nodes[self.tets[e][0] as usize], &self.gradients[e], x)
+    }
+
+    /// Gradients of all four shape functions of element `e`, 1/m.
+    #[inline]
+    pub fn all_gradients(&self, e: usize) -> [Vec3; 4] {
+        let [b, c, d] = self.gradients[e];
+        [-(b + c + d), b, c, d]
+    }
+
+    /// Corner coordinates of element `e`, m.
+    pub fn corners(&self, e: usize) -> [Vec3; 4] {
+        self.tets[e].map(|n| self.nodes[n as usize])
+    }
+
+    /// Centroid of element `e`, m.
+    pub fn centroid(&self, e: usize) -> Vec3 {
+        self.corners(e).iter().sum::<Vec3>() / 4.0
+    }
+
+    /// Computes gradients, volumes and altitudes from the node coordinates, and the volumes
+    /// attached to nodes. To be called whenever nodes have moved.
+    pub fn update_geometry(&mut self) {
+        let (nodes, tets) = (&self.nodes, &self.tets);
+        (&mut self.gradients, &mut self.volumes, &mut self.altitudes)
+            .into_par_iter()
+            .zip(tets)
+            .with_min_len(1024)
+            .for_each(|((gradients, volume, altitude), tet)| {
+                (*gradients, *volume) = tetrahedron_gradients(tet.map(|n| nodes[n as usize]));
+                let first = -(gradients[0] + gradients[1] + gradients[2]);
+                let steepest = gradients
+                    .iter()
+                    .fold(first.length_squared(), |m, g| m.max(g.length_squared()));
+                *altitude = 1.0 / steepest.sqrt();
+            });
+        let (volumes, offsets, attached) = (&self.volumes, &self.node_offsets, &self.node_elements);
+        self.node_volumes
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(1024)
+            .for_each(|(n, sum)| {
+                let range = offsets[n] as usize..offsets[n + 1] as usize;
+                *sum = attached[range]
+                    .iter()
+                    .map(|&(e, _)| volumes[e as usize])
+                    .sum();
+            });
+    }
+}

@@ -1,0 +1,277 @@
+//! What is to be computed: checked, in SI units, every name resolved to a number.
+
+use crate::Vec3;
+use crate::boundary::Function;
+use crate::material::Material;
+use crate::mesh::Mesh;
+
+/// Everything that decides a simulation's result. Output is not part of it.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub title: String,
+    /// m/s².
+    pub gravity: Vec3,
+    pub mesh: Mesh,
+    pub materials: Vec<NamedMaterial>,
+    pub bodies: Vec<Body>,
+    pub boundaries: Vec<Boundary>,
+    pub loads: Vec<Load>,
+    pub probes: Vec<Probe>,
+    pub numerics: Numerics,
+    pub stages: Vec<Stage>,
+}
+
+#[derive(Clone, Debug)]
+pub struct NamedMaterial {
+    pub name: String,
+    /// Initial mass density, kg/m³.
+    pub density: f64,
+    pub model: Material,
+}
+
+/// A region of the mesh filled with particles of one material.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub name: String,
+    pub place: Place,
+    /// Index into [`Plan::materials`].
+    pub material: usize,
+    pub seeding: Seeding,
+}
+
+/// Where a body's particles are at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// In all elements of a volume group (index into [`Mesh::volume_groups`]).
+    VolumeGroup(usize),
+    /// At the seeding points of any element that lie in this region.
+    Region(Region),
+}
+
+/// A simple solid, closed (its surface belongs to it). Lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    Box {
+        min: Vec3,
+        max: Vec3,
+    },
+    Sphere {
+        centre: Vec3,
+        radius: f64,
+    },
+    /// Between the planes through both ends of the axis.
+    Cylinder {
+        start: Vec3,
+        end: Vec3,
+        radius: f64,
+    },
+    /// The side of the plane that the normal points away from.
+    HalfSpace {
+        point: Vec3,
+        normal: Vec3,
+    },
+}
+
+impl Region {
+    pub fn contains(&self, x: Vec3) -> bool {
+        match *self {
+            Region::Box { min, max } => x.cmpge(min).all() && x.cmple(max).all(),
+            Region::Sphere { centre, radius } => (x - centre).length() <= radius,
+            Region::Cylinder { start, end, radius } => {
+                let axis = end - start;
+                let along = (x - start).dot(axis) / axis.length_squared();
+                (0.0..=1.0).contains(&along) && (x - start - along * axis).length() <= radius
+            }
+            Region::HalfSpace { point, normal } => (x - point).dot(normal) <= 0.0,
+        }
+    }
+}
+
+/// Particles seeded in each element, all with the same share of its volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seeding {
+    One,
+    Four,
+    Ten,
+}
+
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    pub name: String,
+    /// Indices into [`Mesh::surfaces`].
+    pub surfaces: Vec<usize>,
+    pub kind: BoundaryKind,
+}
+
+#[derive(Clone, Debug)]
+pub enum BoundaryKind {
+    /// No motion in the directions (x, y, z) that are true.
+    Fixed { directions: [bool; 3] },
+    /// No motion normal to the surface.
+    Roller,
+    /// Given velocity, m/s, times a function of time; `None` leaves a direction free.
+    Prescribed {
+        velocity: [Option<f64>; 3],
+        function: Function,
+    },
+    /// Dashpot, and spring if a virtual thickness is given (Jassim et al. Eq. 17–20).
+    Absorbing {
+        /// α_n, α_s.
+        alpha: [f64; 2],
+        /// δ_n, δ_s, m.
+        virtual_thickness: Option<[f64; 2]>,
+    },
+}
+
+/// A load on a surface, carried by the particles of one body next to it.
+#[derive(Clone, Debug)]
+pub struct Load {
+    pub name: String,
+    /// Indices into [`Mesh::surfaces`].
+    pub surfaces: Vec<usize>,
+    /// Index into [`Plan::bodies`].
+    pub body: usize,
+    pub kind: LoadKind,
+    pub function: Function,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadKind {
+    /// Force per area of the surface at the start, Pa.
+    Traction(Vec3),
+    /// Against the body, along the surface's normal at the start, Pa.
+    Pressure(f64),
+    /// The whole surface's force, N, spread evenly over its area.
+    Force(Vec3),
+}
+
+#[derive(Clone, Debug)]
+pub struct Probe {
+    pub name: String,
+    pub target: Target,
+    pub quantities: Vec<Quantity>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// Index into [`Mesh::surfaces`].
+    Surface(usize),
+    /// Follows the particle nearest to this point at the start.
+    Point(Vec3),
+    /// Index into [`Plan::bodies`].
+    Body(usize),
+}
+
+/// What a probe records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    Displacement,
+    Velocity,
+    Acceleration,
+    Position,
+    Stress,
+    /// Force on a surface that carries a boundary, N.
+    Reaction,
+}
+
+impl Quantity {
+    /// Every quantity with its name in a scene.
+    pub const ALL: [(&'static str, Quantity); 6] = [
+        ("displacement", Quantity::Displacement),
+        ("velocity", Quantity::Velocity),
+        ("acceleration", Quantity::Acceleration),
+        ("position", Quantity::Position),
+        ("stress", Quantity::Stress),
+        ("reaction", Quantity::Reaction),
+    ];
+
+    /// The quantity's name.
+    pub fn name(self) -> &'static str {
+        Quantity::ALL
+            .iter()
+            .find(|q| q.1 == self)
+            .expect("every quantity is listed")
+            .0
+    }
+
+    /// The names of its components.
+    pub fn components(self) -> &'static [&'static str] {
+        match self {
+            Quantity::Stress => &["xx", "yy", "zz", "xy", "yz", "zx"],
+            _ => &["x", "y", "z"],
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::Displacement | Quantity::Position => "m",
+            Quantity::Velocity => "m/s",
+            Quantity::Acceleration => "m/s2",
+            Quantity::Stress => "Pa",
+            Quantity::Reaction => "N",
+        }
+    }
+}
+
+/// How the internal force is integrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integration {
+    /// Mean stress times element volume in filled elements, particles elsewhere.
+    Mixed,
+    /// Particles everywhere.
+    Particle,
+}
+
+#[derive(Clone, Debug)]
+pub struct Numerics {
+    pub integration: Integration,
+    /// Nodal mixed discretisation of the volumetric strain.
+    pub smoothing: bool,
+    /// Share of the critical step that is taken.
+    pub courant: f64,
+    /// Rate at which particle velocities relax to the mesh's, 1/s.
+    pub pic_rate: f64,
+    /// Stiffness-proportional viscosity: stress C : ε̇ times this time, s.
+    pub viscosity: f64,
+    /// Local (Cundall) damping factor.
+    pub damping: f64,
+    /// Forces the step, s.
+    pub time_step: Option<f64>,
+    /// Upper bound of the step, s.
+    pub max_time_step: Option<f64>,
+}
+
+impl Default for Numerics {
+    fn default() -> Numerics {
+        Numerics {
+            integration: Integration::Mixed,
+            smoothing: true,
+            courant: 0.5,
+            pic_rate: 0.0,
+            viscosity: 0.0,
+            damping: 0.0,
+            time_step: None,
+            max_time_step: None,
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Stage {
+    pub name: String,
+    pub until: Until,
+    /// Local damping in this stage, if it differs from [`Numerics::damping`].
+    pub damping: Option<f64>,
+    /// Velocities given to whole bodies when the stage begins, m/s.
+    pub initial_velocities: Vec<(usize, Vec3)>,
+}
+
+/// When a stage ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Until {
+    /// After this time, s.
+    Duration(f64),
+    /// After so many steps.
+    Steps(u64),
+}

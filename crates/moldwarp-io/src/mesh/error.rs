@@ -53,18 +53,23 @@ pub enum GmshProblem {
     Version { version: String, command: String },
     #[error("expected {expected}, found {found}")]
     Expected { expected: String, found: String },
-    #[error("the file claims {count} {what}, but only {room} bytes follow")]
+    #[error("the file claims {count} {what}, but only {room} bytes follow; it may be cut short")]
     TooMany {
         count: u64,
         what: &'static str,
         room: usize,
     },
-    #[error("the file has no section `${0}`; it may be cut short")]
-    NoSection(&'static str),
+    #[error(
+        "the file has no section `${name}`; it is cut short or was saved before it was meshed: \
+         `{command}`"
+    )]
+    NoSection { name: &'static str, command: String },
     #[error("`$Elements` comes before `$Nodes`; Gmsh writes the nodes first")]
     ElementsFirst,
     #[error("the mesh is partitioned; mesh it again without `-part`: `{command}`")]
     Partitioned { command: String },
+    #[error("nodes with parameters in MSH 2.2 cannot be read; convert them: `{command}`")]
+    ParametricNodes { command: String },
     #[error("two nodes have the tag {0}")]
     TwoNodes(u64),
     #[error("element {element} names node {node}, which the file does not have")]

@@ -47,7 +47,16 @@ pub fn read_gmsh(path: &Path) -> Result<MeshFile, MeshFileError> {
             source,
         },
     })?;
-    gmsh::parse(path, &bytes)
+    parse_gmsh(path, &bytes)
+}
+
+/// Reads a Gmsh file from memory; `file` is its name in messages.
+///
+/// # Errors
+///
+/// As [`read_gmsh`].
+pub fn parse_gmsh(file: &Path, bytes: &[u8]) -> Result<MeshFile, MeshFileError> {
+    gmsh::parse(file, bytes)
 }
 
 /// The whole of a regular file; a pipe or a device may have no end.

@@ -5,17 +5,15 @@ mod read;
 mod refuse;
 mod write;
 
-use moldwarp_io::mesh::{MeshFile, read_gmsh};
+use moldwarp_io::mesh::{MeshFile, parse_gmsh};
 use std::path::Path;
 
-/// Reads `bytes` as a file `mesh.msh`; an error comes as its message without the folder.
+/// Reads `bytes` as a file `mesh.msh`; an error comes as its message.
 fn parse(bytes: impl AsRef<[u8]>) -> Result<MeshFile, String> {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("mesh.msh");
-    std::fs::write(&file, bytes).unwrap();
-    read_gmsh(&file).map_err(|e| without_folder(&e.to_string(), folder.path()))
+    parse_gmsh(Path::new("mesh.msh"), bytes.as_ref()).map_err(|e| e.to_string())
 }
 
+/// A message without the folder of its file.
 fn without_folder(message: &str, folder: &Path) -> String {
     message.replace(&format!("{}/", folder.display()), "")
 }

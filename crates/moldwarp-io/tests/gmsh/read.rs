@@ -142,6 +142,18 @@ fn groups_without_a_name_are_called_by_their_tag_and_empty_ones_noted() {
 }
 
 #[test]
+fn groups_lost_by_gmsh_are_noted() {
+    let text = V22
+        .replace("2 2 5 1", "2 2 0 1")
+        .replace("4 2 1 1", "4 2 0 1");
+    assert_eq!(
+        parse(text).unwrap().notes[1],
+        "no element is in one of the file's physical groups; MSH 2.2 loses them under \
+         Mesh.SaveAll, MSH 4.1 does not"
+    );
+}
+
+#[test]
 fn elements_without_a_group_are_part_of_the_mesh() {
     for text in [
         V22.replace("8 4 2 1 1", "8 4 2 0 1"),

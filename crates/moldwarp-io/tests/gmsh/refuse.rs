@@ -21,8 +21,7 @@ fn a_missing_file_is_made_from_its_geometry_or_sought_among_others() {
     let folder = tempfile::tempdir().unwrap();
     let message = |name: &str| {
         let error = read_gmsh(&folder.path().join(name)).unwrap_err();
-        let message = without_folder(&error.to_string(), folder.path());
-        message.replace(&folder.path().display().to_string(), "FOLDER")
+        without_folder(&error.to_string(), folder.path())
     };
     assert_eq!(
         message("column.msh"),
@@ -31,7 +30,7 @@ fn a_missing_file_is_made_from_its_geometry_or_sought_among_others() {
     );
     assert_eq!(
         message("sub/column.msh"),
-        "sub/column.msh does not exist: there is no folder FOLDER/sub"
+        "sub/column.msh does not exist: there is no folder sub"
     );
     for name in ["colum.msh", "slope.msh", "other.txt"] {
         fs::write(folder.path().join(name), "").unwrap();
@@ -47,7 +46,10 @@ fn a_missing_file_is_made_from_its_geometry_or_sought_among_others() {
         "column.msh does not exist: make it with `gmsh -3 column.geo -o column.msh`"
     );
     fs::write(folder.path().join("a column's.geo"), "").unwrap();
-    assert!(message("a column's.msh").ends_with("/a column'\\''s.msh'`"));
+    assert_eq!(
+        message("a column's.msh"),
+        r"a column's.msh does not exist: make it with `gmsh -3 'a column'\''s.geo' -o 'a column'\''s.msh'`"
+    );
     assert_eq!(
         message("column.geo"),
         "column.geo, line 1: not a Gmsh mesh, which begins with `$MeshFormat`; this begins with \
@@ -142,15 +144,20 @@ fn a_mesh_needs_tetrahedra_and_no_partitions() {
         "mesh.msh, line 15: the mesh is partitioned; mesh it again without `-part`: `gmsh -3 \
          mesh.geo -o mesh.msh`"
     );
+    assert_eq!(
+        v22("$Nodes", "$ParametricNodes"),
+        "mesh.msh, line 9: nodes with parameters in MSH 2.2 cannot be read; convert them: `gmsh \
+         mesh.msh -save -format msh41 -o mesh-41.msh`"
+    );
     let (start, elements) = V22.split_at(V22.find("$Elements").unwrap());
     assert_eq!(
         refusal(start),
-        "mesh.msh: the file has no section `$Elements`; it may be cut short"
+        "mesh.msh: the file has no section `$Elements`; it is cut short or was saved before it was meshed: `gmsh -3 mesh.geo -o mesh.msh`"
     );
     let header = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
     assert_eq!(
         refusal(header),
-        "mesh.msh: the file has no section `$Nodes`; it may be cut short"
+        "mesh.msh: the file has no section `$Nodes`; it is cut short or was saved before it was meshed: `gmsh -3 mesh.geo -o mesh.msh`"
     );
     assert_eq!(
         refusal(format!("{header}{elements}")),
@@ -176,7 +183,7 @@ fn a_tetrahedron_belongs_to_one_volume() {
     }
     let text = V41
         .replace(names, three)
-        .replace("1 1 1 1 1 -1", "1 1 1 2 2 1 1 -1");
+        .replace("1 1 1 1 1 1 -1", "1 1 1 2 2 1 1 -1");
     assert_eq!(refusal(text), format!("mesh.msh, line 38: {expected}"));
 }
 
@@ -217,7 +224,7 @@ fn wrong_nodes_are_named_with_their_line() {
     );
     assert_eq!(
         v41("\n99\n", "\n0\n"),
-        "mesh.msh, line 21: expected the tag of a node, 1 or more, found `0`"
+        "mesh.msh, line 22: expected the tag of a node, 1 or more, found `0`"
     );
     for number in ["nan", "-inf"] {
         assert_eq!(
@@ -264,7 +271,7 @@ fn wrong_counts_are_found() {
     );
     assert_eq!(
         v41("2 5 10 99", "2 4 10 99"),
-        "mesh.msh, line 19: expected 3 nodes or fewer, which the section has left, found `4`"
+        "mesh.msh, line 20: expected 3 nodes or fewer, which the section has left, found `4`"
     );
 }
 
@@ -279,11 +286,7 @@ fn names_of_groups_stand_in_quotes_and_in_utf8() {
         v22("3 1 \"soil\"", "4 1 \"soil\""),
         "mesh.msh, line 6: expected a dimension from 0 to 3, found `4`"
     );
-    let latin: Vec<u8> = V22
-        .bytes()
-        .map(|b| if b == b'k' || b == b'z' { 0xf8 } else { b })
-        .collect();
-    let mut bytes = latin;
+    let mut bytes = V22.as_bytes().to_vec();
     let at = bytes.windows(4).position(|w| w == b"soil").unwrap();
     bytes[at] = 0xf8;
     assert_eq!(
@@ -309,10 +312,19 @@ fn sections_end_as_they_begin() {
 fn binary_faults_are_placed_by_their_byte() {
     let whole = write::v22(false);
     assert_eq!(
-        refusal(&whole[..150]),
-        "mesh.msh, byte 149: expected a coordinate in 8 bytes, found the end of the file after 1"
+        refusal(&whole[..whole.len() - 140]),
+        "mesh.msh, byte 271: the file claims 4 elements, but only 10 bytes follow; it may be cut \
+         short"
     );
     let at = whole.windows(10).position(|w| w == b"$Elements\n").unwrap() + 12;
+    assert_eq!(
+        refusal(&whole[..at + 34]),
+        format!(
+            "mesh.msh, byte {}: expected the length of a run of elements in 4 bytes, found the \
+             end of the file after 2",
+            at + 32
+        )
+    );
     let mut bytes = whole.clone();
     bytes[at] = 5;
     assert!(refusal(bytes).starts_with(&format!("mesh.msh, byte {at}: hexahedra (")));

@@ -151,6 +151,15 @@ impl Assembly {
 
     /// A named group without elements is left out, since nothing could be done with it.
     fn note_empty_groups(&self, volumes: &BTreeMap<u64, Vec<u32>>, notes: &mut Vec<String>) {
+        let named = self.names.keys().any(|&(dimension, _)| dimension >= 2);
+        if named && volumes.is_empty() && self.triangles.is_empty() {
+            notes.push(
+                "no element is in one of the file's physical groups; MSH 2.2 loses them under \
+                 Mesh.SaveAll, MSH 4.1 does not"
+                    .to_owned(),
+            );
+            return;
+        }
         for (&(dimension, tag), name) in &self.names {
             let (kind, element, empty) = match dimension {
                 3 => ("volume", "tetrahedron", !volumes.contains_key(&tag)),

@@ -46,6 +46,10 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
                     Version::V41 => v41::nodes(&mut cursor, &mut assembly)?,
                 }
             }
+            ("ParametricNodes", Version::V22) => {
+                let command = convert_command(path);
+                return Err(cursor.wrong(GmshProblem::ParametricNodes { command }));
+            }
             ("Elements", _) if !has_nodes => {
                 return Err(cursor.wrong(GmshProblem::ElementsFirst));
             }
@@ -65,7 +69,8 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
     }
     let missing = [(has_nodes, "Nodes"), (has_elements, "Elements")];
     if let Some(&(_, name)) = missing.iter().find(|(found, _)| !found) {
-        return Err(whole(path, GmshProblem::NoSection(name)));
+        let command = mesh_command(path);
+        return Err(whole(path, GmshProblem::NoSection { name, command }));
     }
     assembly
         .finish(mesh_command(path))
@@ -121,16 +126,9 @@ fn header(cursor: &mut Cursor) -> Result<Version> {
 }
 
 fn unreadable_version(cursor: &Cursor, version: &str) -> MeshFileError {
-    let file = cursor.file;
-    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-    let target = file.with_file_name(format!("{stem}-41.msh"));
     cursor.wrong(GmshProblem::Version {
         version: cursor::excerpt(version.as_bytes()),
-        command: format!(
-            "gmsh {} -save -format msh41 -o {}",
-            quoted(file),
-            quoted(&target)
-        ),
+        command: convert_command(cursor.file),
     })
 }
 
@@ -163,6 +161,14 @@ fn first_order_command(path: &Path) -> String {
 fn command(path: &Path, options: &str) -> String {
     let [geometry, mesh] = ["geo", "msh"].map(|extension| quoted(&path.with_extension(extension)));
     format!("gmsh {options} {geometry} -o {mesh}")
+}
+
+/// The command that writes the mesh `path` anew in a format that can be read.
+fn convert_command(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let target = path.with_file_name(format!("{stem}-41.msh"));
+    let [from, to] = [path, &target].map(quoted);
+    format!("gmsh {from} -save -format msh41 -o {to}")
 }
 
 /// A path as a shell takes it.

@@ -61,7 +61,7 @@ fn runs(cursor: &mut Cursor, assembly: &mut Assembly, count: u64) -> Result<()> 
         let Ok(tags) = u64::try_from(tags) else {
             return Err(cursor.unexpected("the number of tags of an element", &tags.to_string()));
         };
-        let bytes = 4 * (1 + tags as usize + kind.nodes());
+        let bytes = (1 + kind.nodes() + tags as usize).saturating_mul(4);
         cursor.check_room(length, "elements", bytes)?;
         for _ in 0..length {
             let tag = cursor.int_tag("the tag of an element")?;

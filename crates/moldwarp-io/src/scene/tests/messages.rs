@@ -1,6 +1,6 @@
 //! What a user reads when a scene is wrong.
 
-use super::{SAMPLE, read, with};
+use super::{SAMPLE, read, read_in, with};
 
 /// The message for the sample with `old` replaced by `new`, under a title.
 fn case(title: &str, old: &str, new: &str) -> String {
@@ -144,6 +144,22 @@ fn mesh() {
         case("bad unit", sample, "file = \"column.msh\"\nunit = \"inch\""),
         case("mesh for later", sample, "cylinder = {}"),
     ];
+    insta::assert_snapshot!(lines.join("\n"));
+}
+
+#[test]
+fn files() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path().join("column");
+    std::fs::create_dir(&folder).unwrap();
+    let empty = read_in(dir, &[]).unwrap_err();
+    let mut lines = vec![format!("## no scene\n{}\n", empty.rendered())];
+    std::fs::write(folder.join("column.geo"), "").unwrap();
+    let sample = "box = { size = [\"0.1 m\", \"0.1 m\", \"1 m\"], cells = [1, 1, 10] }";
+    let text = with(sample, "file = \"column.msh\"");
+    std::fs::write(folder.join("scene.toml"), text).unwrap();
+    let unmade = read_in(empty.dir, &[]).unwrap_err();
+    lines.push(format!("## mesh not made\n{}\n", unmade.rendered()));
     insta::assert_snapshot!(lines.join("\n"));
 }
 
@@ -298,4 +314,45 @@ fn sets() {
         set("numerics..courant=1"),
     ];
     insta::assert_snapshot!(lines.join("\n"));
+}
+
+/// Whatever is cut out of a scene, the answer is a plan or a message, and the message can be
+/// shown.
+#[test]
+fn mutilated_scenes_have_messages_too() {
+    let try_out = |text: &str, sets: &[&str]| {
+        if let Err(failure) = read(text, sets) {
+            assert!(!failure.rendered().is_empty());
+        }
+    };
+    let lines: Vec<&str> = SAMPLE.lines().collect();
+    for i in 0..lines.len() {
+        let rest = [&lines[..i], &lines[i + 1..]].concat();
+        try_out(&rest.join("\n"), &[]);
+        try_out(&rest.join("\r\n"), &["numerics.courant=0.4"]);
+    }
+    for end in (0..SAMPLE.len()).step_by(7) {
+        try_out(&SAMPLE[..end], &[]);
+    }
+    for odd in [
+        "",
+        "=",
+        "=3",
+        "a",
+        "a=",
+        ".=1",
+        "\"\"=1",
+        "materials=1",
+        "boundaries=1",
+        "boundaries.0=1",
+        "boundaries.0.surface.0=ä",
+        "boundaries.-1.kind=fixed",
+        "mesh.box.size=[−1, 2]",
+        "title={ a = 1 }",
+        "stages.loading.name=\"ü\"",
+        "probes.new.surface=z-max",
+        "version=2",
+    ] {
+        try_out(SAMPLE, &[odd]);
+    }
 }

@@ -76,10 +76,11 @@ fn read(text: &str, sets: &[&str]) -> Result<Scene, Failure> {
     let folder = dir.path().join("column");
     std::fs::create_dir(&folder).unwrap();
     std::fs::write(folder.join("scene.toml"), text).unwrap();
-    read_in(dir, text, sets)
+    read_in(dir, sets)
 }
 
-fn read_in(dir: TempDir, _text: &str, sets: &[&str]) -> Result<Scene, Failure> {
+/// Loads column/scene.toml of the folder.
+fn read_in(dir: TempDir, sets: &[&str]) -> Result<Scene, Failure> {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
     load(&dir.path().join("column"), &sets).map_err(|error| Failure { error, dir })
 }

@@ -215,7 +215,7 @@ fn optional_parts_have_defaults() {
 }
 
 #[test]
-fn points_outside_and_unused_materials_are_noted() {
+fn unused_materials_are_noted() {
     let text = format!(
         "{SAMPLE}\n[materials.clay]\nmodel = \"linear-elastic\"\n\
         young_modulus = 1e6\npoisson_ratio = 0.3\ndensity = \"1.8 t/m3\"\n"
@@ -292,4 +292,29 @@ fn optional_keys_and_tables_can_be_set_where_they_are_absent() {
     assert_eq!(scene.plan.numerics.courant, 0.4);
     assert_eq!(scene.output.frames, Every::Count(0));
     assert_eq!(scene.plan.stages[0].initial_velocities, [(0, Vec3::X)]);
+}
+
+#[test]
+fn boundaries_that_do_not_disturb_each_other_may_share_a_surface() {
+    let bottom = "kind = \"absorbing\"\nalpha = 2.5 # found by trial\n\
+                  virtual_thickness = \"0.5 m\"";
+    let both = |first: &str, second: &str| {
+        let second = format!("{first}\n[[boundaries]]\nsurface = \"z-min\"\n{second}");
+        read(&with(bottom, &second), &[])
+    };
+    let fixed = "kind = \"fixed\"\ndirections = \"x\"";
+    let roller = "kind = \"roller\"";
+    let moved = |v: &str| format!("kind = \"prescribed\"\nvelocity = {v}");
+    let along = moved("[1, \"free\", \"free\"]");
+    let across = moved("[\"free\", \"free\", 1]");
+    let names = |first: &str, second: &str| -> Vec<String> {
+        let plan = both(first, second).unwrap().plan;
+        plan.boundaries.iter().map(|b| b.name.clone()).collect()
+    };
+    assert_eq!(names(fixed, roller), ["sides", "z-min", "z-min-2"]);
+    assert_eq!(names(roller, &along), ["sides", "z-min", "z-min-2"]);
+    assert_eq!(names(&along, &across), ["sides", "z-min", "z-min-2"]);
+    assert!(both(roller, &across).is_err());
+    assert!(both(fixed, &along).is_err());
+    assert!(both("kind = \"absorbing\"", roller).is_err());
 }

@@ -1,1 +1,46 @@
-fn main() {}
+//! `moldwarp-validation coarse|fine [CASE]`: computes the cases and writes their tables and plots.
+
+use moldwarp_validation::{Fidelity, cases};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let fidelity = match arguments.first().map(String::as_str) {
+        Some("coarse") => Fidelity::Coarse,
+        Some("fine") => Fidelity::Fine,
+        _ => return usage(),
+    };
+    let chosen: Vec<_> = match arguments.get(1) {
+        None => cases::ALL.iter().collect(),
+        Some(name) => match cases::find(name) {
+            Some(case) => vec![case],
+            None => return usage(),
+        },
+    };
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("results").join(fidelity.name());
+    let mut all_passed = true;
+    for case in chosen {
+        let start = Instant::now();
+        println!("{}: {}", case.name, case.title);
+        let report = (case.run)(fidelity);
+        print!("{}", report.summary());
+        println!("  {:.1} s\n", start.elapsed().as_secs_f64());
+        all_passed &= report.passed();
+        if let Err(error) = report.write(&folder, case.name) {
+            eprintln!("cannot write to {}: {error}", folder.display());
+            return ExitCode::from(4);
+        }
+    }
+    println!("tables and plots are in {}", folder.display());
+    if all_passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn usage() -> ExitCode {
+    eprintln!("usage: moldwarp-validation coarse|fine [CASE]\ncases:");
+    for case in &cases::ALL {
+        eprintln!("  {:18} {}", case.name, case.title);
+    }
+    ExitCode::from(2)
+}

@@ -1,0 +1,45 @@
+//! The cases, one file each.
+
+mod absorbing_column;
+mod first_mode;
+mod gravity_column;
+mod mass_matrix;
+mod oedometer;
+mod rotation;
+mod sensitivity;
+mod shear_wave;
+
+use crate::Case;
+
+/// All cases, in the order of the book.
+pub const ALL: [Case; 8] = [
+    Case {
+        name: "absorbing-column",
+        title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
+        run: absorbing_column::run,
+    },
+    Case {
+        name: "sensitivity",
+        title: "The absorbing bottom's parameters: reflection against creep",
+        run: sensitivity::run,
+    },
+    Case {
+        name: "gravity-column",
+        title: "A column under suddenly applied gravity",
+        run: gravity_column::run,
+    },
+    Case { name: "first-mode", title: "Energy of the first elastic mode", run: first_mode::run },
+    Case { name: "oedometer", title: "Compression to 40 % strain", run: oedometer::run },
+    Case {
+        name: "mass-matrix",
+        title: "Lumped against consistent mass on the first mode",
+        run: mass_matrix::run,
+    },
+    Case { name: "rotation", title: "A body that spins freely", run: rotation::run },
+    Case { name: "shear-wave", title: "A shear wave against a dashpot", run: shear_wave::run },
+];
+
+/// The case of this name.
+pub fn find(name: &str) -> Option<&'static Case> {
+    ALL.iter().find(|c| c.name == name)
+}

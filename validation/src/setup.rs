@@ -1,0 +1,132 @@
+//! Plans that several cases share.
+
+use moldwarp::boundary::Function;
+use moldwarp::material::{LinearElastic, Material};
+use moldwarp::mesh::box_mesh;
+use moldwarp::plan::*;
+use moldwarp::{Mesh, Plan, Simulation, Vec3};
+
+/// A column of cubic cells of Kuhn tetrahedra: 2 × 2 × n cells, 1 m high, standing on z = 0.
+pub fn column_mesh(n: usize) -> Mesh {
+    let h = 1.0 / n as f64;
+    box_mesh(Vec3::new(2.0 * h, 2.0 * h, 1.0), [2, 2, n]).expect("a box is a good mesh")
+}
+
+/// The same column with a fifth of its height of empty elements above.
+pub fn column_with_room(n: usize, material: NamedMaterial, end: f64) -> Plan {
+    let room = n.div_ceil(5);
+    let h = 1.0 / n as f64;
+    let size = Vec3::new(2.0 * h, 2.0 * h, (n + room) as f64 * h);
+    let mesh = box_mesh(size, [2, 2, n + room]).expect("a box is a good mesh");
+    let mut plan = column(mesh, material, end);
+    let max = Vec3::new(size.x, size.y, 1.0);
+    plan.bodies[0].place = Place::Region(Region::Box { min: Vec3::ZERO, max });
+    plan
+}
+
+/// The paper's soil (Section 7): 100 kPa, ν = 0, 18 kN/m³.
+pub fn papers_soil() -> NamedMaterial {
+    elastic(1e5, 0.0, 18e3 / 9.81)
+}
+
+pub fn elastic(young_modulus: f64, poisson_ratio: f64, density: f64) -> NamedMaterial {
+    let model = Material::LinearElastic(LinearElastic { young_modulus, poisson_ratio });
+    NamedMaterial { name: "soil".to_owned(), density, model }
+}
+
+/// One body that fills the whole mesh, nothing holds or loads it.
+pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
+    Plan {
+        title: String::new(),
+        gravity: Vec3::ZERO,
+        mesh,
+        materials: vec![material],
+        bodies: vec![Body {
+            name: "body".to_owned(),
+            place: Place::VolumeGroup(0),
+            material: 0,
+            seeding: Seeding::Four,
+        }],
+        boundaries: Vec::new(),
+        loads: Vec::new(),
+        probes: Vec::new(),
+        numerics: Numerics::default(),
+        stages: vec![Stage {
+            name: "run".to_owned(),
+            until: Until::Duration(end),
+            damping: None,
+            initial_velocities: Vec::new(),
+        }],
+    }
+}
+
+/// Adds a boundary on named surfaces.
+pub fn bound(plan: &mut Plan, surfaces: &[&str], kind: BoundaryKind) {
+    let name = surfaces.join("+");
+    let surfaces = surfaces.iter().map(|s| surface(plan, s)).collect();
+    plan.boundaries.push(Boundary { name, surfaces, kind });
+}
+
+/// Adds a traction that is there from the start.
+pub fn load(plan: &mut Plan, on: &str, traction: Vec3) {
+    let surfaces = vec![surface(plan, on)];
+    let (kind, function) = (LoadKind::Traction(traction), Function::Constant);
+    plan.loads.push(Load { name: on.to_owned(), surfaces, body: 0, kind, function });
+}
+
+/// Adds a probe on a surface.
+pub fn probe(plan: &mut Plan, name: &str, on: &str, quantities: &[Quantity]) {
+    let target = Target::Surface(surface(plan, on));
+    plan.probes.push(Probe { name: name.to_owned(), target, quantities: quantities.to_vec() });
+}
+
+fn surface(plan: &Plan, name: &str) -> usize {
+    plan.mesh.surface(name).unwrap_or_else(|| panic!("the mesh has no surface {name}"))
+}
+
+pub const FIXED: BoundaryKind = BoundaryKind::Fixed { directions: [true; 3] };
+pub const SIDES: [&str; 4] = ["x-min", "x-max", "y-min", "y-max"];
+
+/// A column with rollers on its sides.
+pub fn column(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
+    let mut plan = free_body(mesh, material, end);
+    bound(&mut plan, &SIDES, BoundaryKind::Roller);
+    plan
+}
+
+/// What a run comes to in the ledger.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Balance {
+    /// Greatest |residual| over the energy turned over.
+    pub residual: f64,
+    /// Greatest sum of the absolute numerical terms over the energy turned over.
+    pub numerical: f64,
+}
+
+/// Runs to the end; `look` is called at the start and after every step.
+pub fn run(plan: Plan, look: impl FnMut(&Simulation)) -> Balance {
+    run_from(Simulation::new(plan).unwrap_or_else(|e| panic!("{e}")), look)
+}
+
+/// Runs a simulation to its end; `look` is called at the start and after every step.
+pub fn run_from(mut simulation: Simulation, mut look: impl FnMut(&Simulation)) -> Balance {
+    let (mut residual, mut numerical) = (0.0f64, 0.0f64);
+    look(&simulation);
+    while !simulation.finished() {
+        simulation.step().unwrap_or_else(|e| panic!("{e}"));
+        let energies = simulation.energies();
+        residual = residual.max(energies.residual.abs());
+        numerical = numerical.max(energies.numerical());
+        look(&simulation);
+    }
+    let whole = simulation.energy_turned_over();
+    Balance { residual: residual / whole, numerical: numerical / whole }
+}
+
+/// The value of a probe's column.
+pub fn value(simulation: &Simulation, column: &str) -> f64 {
+    let at = simulation.probe_columns().iter().position(|c| c.0 == column);
+    let mut values = Vec::new();
+    simulation.probe_values(&mut values);
+    values[at.unwrap_or_else(|| panic!("no column {column}"))]
+}

@@ -1,0 +1,32 @@
+//! The coarse cases as tests: every figure within its limit.
+
+use moldwarp_validation::{Fidelity, cases};
+
+fn run(name: &str) {
+    let case = cases::find(name).expect("a case of that name");
+    let report = (case.run)(Fidelity::Coarse);
+    assert!(report.passed(), "{name}:\n{}", report.summary());
+}
+
+macro_rules! coarse {
+    ($($test:ident = $name:literal),* $(,)?) => {
+        $(#[test] fn $test() { run($name); })*
+
+        #[test]
+        fn every_case_is_tested() {
+            let tested = [$($name),*];
+            assert!(cases::ALL.iter().all(|c| tested.contains(&c.name)));
+        }
+    };
+}
+
+coarse! {
+    absorbing_column = "absorbing-column",
+    sensitivity = "sensitivity",
+    gravity_column = "gravity-column",
+    first_mode = "first-mode",
+    oedometer = "oedometer",
+    mass_matrix = "mass-matrix",
+    rotation = "rotation",
+    shear_wave = "shear-wave",
+}

@@ -39,16 +39,8 @@ pub fn difference(
     history: impl Iterator<Item = (f64, f64)>,
     reference: &[(f64, f64)],
 ) -> Result<Difference, CompareError> {
-    let (Some(first), Some(last)) = (reference.first(), reference.last()) else {
-        return Err(CompareError::Empty);
-    };
-    if let Some(pair) = reference.windows(2).find(|w| w[0].0 > w[1].0) {
-        return Err(CompareError::NotOrdered { time: pair[1].0 });
-    }
-    let peak = reference.iter().fold(0.0, |p: f64, r| p.max(r.1.abs()));
-    if peak == 0.0 {
-        return Err(CompareError::Flat);
-    }
+    let peak = reference_peak(reference)?;
+    let (first, last) = (reference[0], reference[reference.len() - 1]);
     let mut worst: Option<(f64, f64)> = None;
     let mut end = f64::NEG_INFINITY;
     for (time, value) in history {
@@ -74,6 +66,21 @@ pub fn difference(
         time,
         peak,
     })
+}
+
+/// Greatest |value| of a reference, or why it cannot be one.
+pub fn reference_peak(reference: &[(f64, f64)]) -> Result<f64, CompareError> {
+    if reference.is_empty() {
+        return Err(CompareError::Empty);
+    }
+    if let Some(pair) = reference.windows(2).find(|w| w[0].0 > w[1].0) {
+        return Err(CompareError::NotOrdered { time: pair[1].0 });
+    }
+    let peak = reference.iter().fold(0.0, |p: f64, r| p.max(r.1.abs()));
+    if peak == 0.0 {
+        return Err(CompareError::Flat);
+    }
+    Ok(peak)
 }
 
 /// The reference at a time within its range.

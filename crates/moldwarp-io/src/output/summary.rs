@@ -28,6 +28,8 @@ pub struct Summary {
     /// At the end, J, by kind.
     #[serde(serialize_with = "in_order")]
     pub energy: Vec<(String, f64)>,
+    /// The greatest half sum of the absolute physical terms, J: what to relate the others to.
+    pub energy_turned_over: f64,
     pub compare: Vec<Compared>,
     pub threads: usize,
     pub version: String,
@@ -95,6 +97,7 @@ mod tests {
             min_dt: Some(0.25),
             max_dt: None,
             energy: vec![("kinetic".into(), 1.0), ("elastic".into(), f64::NAN)],
+            energy_turned_over: 2.0,
             compare: Vec::new(),
             threads: 2,
             version: "0.1.0".into(),

@@ -1,0 +1,75 @@
+//! `moldwarp new`: the examples, which are in the binary.
+
+use crate::Failure;
+use crate::args::NewArgs;
+use crate::exit::Exit;
+use moldwarp_io::output::FileError;
+use std::fs;
+
+struct Case {
+    name: &'static str,
+    files: &'static [(&'static str, &'static [u8])],
+}
+
+macro_rules! case {
+    ($name:literal: $($file:literal),+ $(,)?) => {
+        Case {
+            name: $name,
+            files: &[$((
+                $file,
+                include_bytes!(concat!("../../../examples/", $name, "/", $file)),
+            )),+],
+        }
+    };
+}
+
+const CASES: &[Case] = &[case!("absorbing-column": "scene.toml")];
+
+/// Names of the examples.
+pub fn names() -> Vec<&'static str> {
+    CASES.iter().map(|c| c.name).collect()
+}
+
+pub fn new(args: &NewArgs) -> Result<Exit, Failure> {
+    let dir = &args.dir;
+    let Some(case) = CASES.iter().find(|c| c.name == args.case) else {
+        return Err(Failure::input(miette::miette!(
+            "there is no example `{}`",
+            args.case
+        )));
+    };
+    let taken = |source| FileError {
+        action: "read",
+        path: dir.clone(),
+        source,
+    };
+    if dir.exists()
+        && fs::read_dir(dir)
+            .map_err(taken)
+            .map_err(report)?
+            .next()
+            .is_some()
+    {
+        return Err(Failure::input(miette::miette!(
+            help = "name a folder that does not exist yet",
+            "{} is not empty",
+            dir.display()
+        )));
+    }
+    fs::create_dir_all(dir)
+        .map_err(FileError::at("create", dir))
+        .map_err(report)?;
+    for (name, content) in case.files {
+        let path = dir.join(name);
+        fs::write(&path, content)
+            .map_err(FileError::at("write", &path))
+            .map_err(|e| Failure::new(Exit::Files, miette::miette!("{e}")))?;
+    }
+    println!("next: moldwarp run {}", dir.display());
+    Ok(Exit::Done)
+}
+
+/// Nothing has been written yet: the argument is wrong.
+fn report(error: FileError) -> Failure {
+    Failure::input(miette::miette!("{error}"))
+}

@@ -9,12 +9,20 @@
 
 pub mod boundary;
 pub mod material;
+pub mod measure;
 pub mod mesh;
+mod parallel;
+pub mod particles;
 pub mod plan;
+mod simulation;
+pub mod step;
+pub mod tensor;
 
 pub use material::Material;
 pub use mesh::Mesh;
+pub use particles::Particles;
 pub use plan::Plan;
+pub use simulation::{NodeFields, SetupError, Simulation, Stop};
 
 /// A point, a vector: x, y, z.
 pub type Vec3 = glam::DVec3;

@@ -1,5 +1,11 @@
 //! What acts on a body from outside: fixities, absorbing boundaries, loads.
 
+mod absorbing;
+mod constraints;
 mod function;
+mod load;
 
+pub use absorbing::{Absorbing, AbsorbingNode};
+pub use constraints::{Constraint, Constraints, surface_nodes};
 pub use function::Function;
+pub use load::{LoadError, LoadPoint, load_points};

@@ -4,6 +4,8 @@ mod linear_elastic;
 
 pub use linear_elastic::LinearElastic;
 
+use crate::tensor::Voigt;
+
 /// A material model with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Material {
@@ -11,6 +13,14 @@ pub enum Material {
 }
 
 impl Material {
+    /// Stress after a strain increment, Pa. `stress` has been rotated by the step's spin.
+    #[inline]
+    pub fn update(&self, stress: &Voigt, strain: &Voigt) -> Voigt {
+        match self {
+            Material::LinearElastic(elastic) => elastic.update(stress, strain),
+        }
+    }
+
     /// The elastic part of the model.
     pub fn elasticity(&self) -> &LinearElastic {
         match self {

@@ -7,11 +7,13 @@
 mod generate;
 mod geometry;
 mod locate;
+mod motion;
 mod quality;
 mod topology;
 
 pub use generate::box_mesh;
 pub use geometry::{barycentric, tetrahedron_gradients};
+pub use motion::Follower;
 pub use quality::Quality;
 
 use crate::Vec3;

@@ -1,0 +1,114 @@
+//! Absorbing boundaries: a dashpot, and a spring that limits its creep.
+//!
+//! Jassim et al. Eq. 17–20, on a node with the area vectors of its faces (a third of each):
+//! C = Σ ρ A [α_n V_p n nᵀ + α_s V_s (I − n nᵀ)], K = Σ A [E_c/δ_n n nᵀ + G/δ_s (I − n nᵀ)].
+//! Both are taken at the end of the step: a lagged dashpot with α = 2.5 is unstable.
+
+use super::Constraints;
+use crate::mesh::{Face, Mesh, NONE};
+use crate::plan::{Boundary, BoundaryKind, NamedMaterial};
+use crate::{Mat3, Vec3};
+
+/// A node on absorbing faces.
+#[derive(Clone, Debug)]
+pub struct AbsorbingNode {
+    /// Mesh node.
+    pub node: u32,
+    /// C, N s/m.
+    pub dashpot: Mat3,
+    /// K, N/m.
+    pub spring: Mat3,
+    /// Displacement a since the boundary is there, m.
+    pub displacement: Vec3,
+}
+
+/// All nodes on absorbing faces.
+#[derive(Clone, Debug, Default)]
+pub struct Absorbing {
+    pub nodes: Vec<AbsorbingNode>,
+    of_node: Vec<u32>,
+}
+
+impl Absorbing {
+    /// `material` gives the material next to a face, if there is any.
+    pub fn new<'a>(
+        mesh: &Mesh,
+        boundaries: &[Boundary],
+        material: impl Fn(Face) -> Option<&'a NamedMaterial>,
+    ) -> Absorbing {
+        let mut absorbing = Absorbing { nodes: Vec::new(), of_node: vec![NONE; mesh.nodes.len()] };
+        for boundary in boundaries {
+            let BoundaryKind::Absorbing { alpha, virtual_thickness } = boundary.kind else { continue };
+            for &face in boundary.surfaces.iter().flat_map(|&s| &mesh.surfaces[s].faces) {
+                let Some(material) = material(face) else { continue };
+                let area = mesh.face_area(face);
+                let (dashpot, spring) = face_matrices(area, alpha, virtual_thickness, material);
+                for node in mesh.face_nodes(face) {
+                    let entry = absorbing.entry(node);
+                    entry.dashpot += dashpot * (1.0 / 3.0);
+                    entry.spring += spring * (1.0 / 3.0);
+                }
+            }
+        }
+        absorbing
+    }
+
+    /// The absorbing node at a mesh node.
+    #[inline]
+    pub fn of(&self, node: u32) -> Option<&AbsorbingNode> {
+        self.nodes.get(self.of_node[node as usize] as usize)
+    }
+
+    fn entry(&mut self, node: u32) -> &mut AbsorbingNode {
+        let index = &mut self.of_node[node as usize];
+        if *index == NONE {
+            *index = self.nodes.len() as u32;
+            let (dashpot, spring) = (Mat3::ZERO, Mat3::ZERO);
+            self.nodes.push(AbsorbingNode { node, dashpot, spring, displacement: Vec3::ZERO });
+        }
+        &mut self.nodes[*index as usize]
+    }
+}
+
+fn face_matrices(
+    area: Vec3,
+    alpha: [f64; 2],
+    thickness: Option<[f64; 2]>,
+    material: &NamedMaterial,
+) -> (Mat3, Mat3) {
+    let elastic = material.model.elasticity();
+    let (e_c, g, rho) = (elastic.constrained_modulus(), elastic.shear_modulus(), material.density);
+    let size = area.length();
+    let n = area / size;
+    let normal = Mat3::from_cols(n * n.x, n * n.y, n * n.z) * size;
+    let shear = Mat3::IDENTITY * size - normal;
+    let dashpot = normal * (alpha[0] * (rho * e_c).sqrt()) + shear * (alpha[1] * (rho * g).sqrt());
+    let spring = match thickness {
+        Some(delta) => normal * (e_c / delta[0]) + shear * (g / delta[1]),
+        None => Mat3::ZERO,
+    };
+    (dashpot, spring)
+}
+
+impl AbsorbingNode {
+    /// Velocity at the end of a kick of length `h` (s) of a node of mass `m` (kg), with mapped
+    /// velocity `v` and force `f` without the boundary's:
+    /// (m + h C + h² K) v⁺ = m v + h (f − K a), in the subspace that `constraints` leave.
+    pub fn solve(&self, m: f64, v: Vec3, f: Vec3, h: f64, constraints: &Constraints) -> Vec3 {
+        let matrix = Mat3::IDENTITY * m + self.dashpot * h + self.spring * (h * h);
+        let right = v * m + (f - self.spring * self.displacement) * h;
+        match constraints.of(self.node) {
+            None => matrix.inverse() * right,
+            Some(held) => {
+                let free = held.free;
+                let blocked = Mat3::IDENTITY - free;
+                (free * matrix * free + blocked * m).inverse() * (free * right)
+            }
+        }
+    }
+
+    /// Force of the boundary on the node during a kick of length `h` that ends with `v`, N.
+    pub fn force(&self, v: Vec3, h: f64) -> Vec3 {
+        -(self.dashpot * v + self.spring * (self.displacement + v * h))
+    }
+}

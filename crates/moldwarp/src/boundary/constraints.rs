@@ -1,0 +1,228 @@
+//! Fixities, rollers and prescribed velocities, gathered per node.
+
+use super::Function;
+use crate::mesh::{Mesh, NONE};
+use crate::plan::{Boundary, BoundaryKind};
+use crate::{Mat3, Vec3};
+
+/// Roller faces of a node whose normals differ by less than this count as one smooth surface.
+const SMOOTH_COSINE: f64 = 0.866_025_403_784_438_6; // 30°
+
+/// A direction in which a node's velocity is given.
+#[derive(Clone, Debug)]
+struct Held {
+    direction: Vec3,
+    /// Speed along it, m/s, by boundary whose function scales it.
+    speed: Vec<(f64, usize)>,
+}
+
+/// What holds one node.
+#[derive(Clone, Debug)]
+pub struct Constraint {
+    /// Mesh node.
+    pub node: u32,
+    /// Projects a vector into the directions that are left free.
+    pub free: Mat3,
+    held: Vec<Held>,
+}
+
+impl Constraint {
+    fn velocity(&self, functions: &[f64]) -> Vec3 {
+        let speed = |held: &Held| held.speed.iter().map(|&(v, f)| v * functions[f]).sum::<f64>();
+        self.held.iter().map(|held| held.direction * speed(held)).sum()
+    }
+}
+
+/// All constrained nodes of a mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Constraints {
+    pub all: Vec<Constraint>,
+    /// Index into `all` for each mesh node, or [`NONE`].
+    of_node: Vec<u32>,
+    /// Functions of the prescribed velocities.
+    functions: Vec<Function>,
+    /// Their values at the time that was set last, and the one before.
+    values: Vec<f64>,
+    previous: Vec<f64>,
+    /// Whether nothing was prescribed before.
+    first: bool,
+}
+
+impl Constraints {
+    /// Gathers the boundaries of each node. Single directions are held first, then rollers in the
+    /// order of the scene; what a direction shares with those before it is left out.
+    pub fn new(mesh: &Mesh, boundaries: &[Boundary]) -> Constraints {
+        let mut axes: Vec<(u32, [Option<(f64, usize)>; 3])> = Vec::new();
+        let mut functions = vec![Function::Constant];
+        for boundary in boundaries {
+            let components = match &boundary.kind {
+                BoundaryKind::Fixed { directions } => directions.map(|d| d.then_some((0.0, 0))),
+                BoundaryKind::Prescribed { velocity, function } => {
+                    functions.push(function.clone());
+                    velocity.map(|v| v.map(|v| (v, functions.len() - 1)))
+                }
+                BoundaryKind::Roller | BoundaryKind::Absorbing { .. } => continue,
+            };
+            axes.extend(surface_nodes(mesh, &boundary.surfaces).into_iter().map(|n| (n, components)));
+        }
+        let mut constraints = Constraints {
+            of_node: vec![NONE; mesh.nodes.len()],
+            values: vec![1.0; functions.len()],
+            previous: vec![1.0; functions.len()],
+            first: true,
+            functions,
+            all: Vec::new(),
+        };
+        for (node, components) in axes {
+            for (d, component) in components.iter().enumerate() {
+                if let &Some((speed, function)) = component {
+                    constraints.hold(node, Vec3::AXES[d], speed, function);
+                }
+            }
+        }
+        for (node, normals) in roller_normals(mesh, boundaries) {
+            normals.into_iter().for_each(|n| constraints.hold(node, n, 0.0, 0));
+        }
+        constraints
+    }
+
+    /// Sets the time, s, at which prescribed velocities are asked for from now on. `first`: what
+    /// was prescribed before does not count, bodies have just been given their velocities.
+    pub fn set_time(&mut self, time: f64, first: bool) {
+        std::mem::swap(&mut self.values, &mut self.previous);
+        for (value, function) in self.values.iter_mut().zip(&self.functions) {
+            *value = function.value(time);
+        }
+        self.first = first;
+    }
+
+    /// Acceleration in the held directions over a kick of length `h`: the change of what is
+    /// prescribed. A node's mapped velocity is not forced to the prescribed one: it is the mean of
+    /// particles away from the wall, and to take it from them in every step would drain a share of
+    /// their energy that grows as the step falls.
+    #[inline]
+    pub fn acceleration(&self, constraint: &Constraint, velocity: Vec3, h: f64) -> Vec3 {
+        if self.first {
+            let held = velocity - constraint.free * velocity;
+            return (self.prescribed(constraint) - held) / h;
+        }
+        if constraint.held.iter().all(|held| held.speed.is_empty()) {
+            return Vec3::ZERO;
+        }
+        (self.prescribed(constraint) - constraint.velocity(&self.previous)) / h
+    }
+
+    /// The constraint of a mesh node.
+    #[inline]
+    pub fn of(&self, node: u32) -> Option<&Constraint> {
+        self.all.get(self.of_node[node as usize] as usize)
+    }
+
+    /// The part of a node's velocity that is prescribed, m/s.
+    #[inline]
+    pub fn prescribed(&self, constraint: &Constraint) -> Vec3 {
+        constraint.velocity(&self.values)
+    }
+
+    fn hold(&mut self, node: u32, direction: Vec3, speed: f64, function: usize) {
+        if self.of_node[node as usize] == NONE {
+            self.of_node[node as usize] = self.all.len() as u32;
+            self.all.push(Constraint { node, free: Mat3::IDENTITY, held: Vec::new() });
+        }
+        let constraint = &mut self.all[self.of_node[node as usize] as usize];
+        let rest = constraint.free * direction;
+        let length = rest.length();
+        if length < 1e-6 {
+            return;
+        }
+        // Along the rest's unit vector r = (d − Σ (d·e) e) / l the speed is (v − Σ (d·e) v_e) / l.
+        let mut speeds = vec![(speed / length, function)];
+        for held in &constraint.held {
+            let share = direction.dot(held.direction) / length;
+            speeds.extend(held.speed.iter().map(|&(v, f)| (-share * v, f)));
+        }
+        speeds.retain(|&(v, _)| v != 0.0);
+        let unit = rest / length;
+        constraint.free -= Mat3::from_cols(unit * unit.x, unit * unit.y, unit * unit.z);
+        constraint.held.push(Held { direction: unit, speed: speeds });
+        if constraint.held.len() == 3 {
+            constraint.free = Mat3::ZERO;
+        }
+    }
+}
+
+/// The nodes of surfaces, ascending.
+pub fn surface_nodes(mesh: &Mesh, surfaces: &[usize]) -> Vec<u32> {
+    let faces = surfaces.iter().flat_map(|&s| &mesh.surfaces[s].faces);
+    let mut nodes: Vec<u32> = faces.flat_map(|&f| mesh.face_nodes(f)).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// For each node on a roller, the unit normals to hold: faces whose normals differ by less than
+/// 30° are one smooth surface with their area-weighted mean normal.
+fn roller_normals(mesh: &Mesh, boundaries: &[Boundary]) -> Vec<(u32, Vec<Vec3>)> {
+    let rollers = boundaries.iter().filter(|b| matches!(b.kind, BoundaryKind::Roller));
+    let mut areas: Vec<(u32, Vec3)> = rollers
+        .flat_map(|b| &b.surfaces)
+        .flat_map(|&s| &mesh.surfaces[s].faces)
+        .flat_map(|&f| mesh.face_nodes(f).map(|n| (n, mesh.face_area(f))))
+        .collect();
+    areas.sort_by_key(|a| a.0);
+    areas
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|faces| {
+            let mut sums: Vec<Vec3> = Vec::new();
+            for &(_, area) in faces {
+                let alike = |sum: &&mut Vec3| sum.normalize().dot(area.normalize()).abs() > SMOOTH_COSINE;
+                match sums.iter_mut().find(alike) {
+                    Some(sum) => *sum += area * sum.dot(area).signum(),
+                    None => sums.push(area),
+                }
+            }
+            (faces[0].0, sums.iter().map(|s| s.normalize()).collect())
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::box_mesh;
+
+    fn boundary(mesh: &Mesh, names: &[&str], kind: BoundaryKind) -> Boundary {
+        let surfaces = names.iter().map(|n| mesh.surface(n).unwrap()).collect();
+        Boundary { name: names[0].to_owned(), surfaces, kind }
+    }
+
+    #[test]
+    fn rollers_leave_faces_edges_and_corners_their_freedom() {
+        let mesh = box_mesh(Vec3::ONE, [2, 2, 2]).unwrap();
+        let rollers = boundary(&mesh, &["x-min", "y-min", "z-min"], BoundaryKind::Roller);
+        let constraints = Constraints::new(&mesh, &[rollers]);
+        let free = |x: Vec3| {
+            let node = mesh.nodes.iter().position(|n| (*n - x).length() < 1e-12).unwrap();
+            constraints.of(node as u32).map(|c| c.free * Vec3::ONE)
+        };
+        assert_eq!(free(Vec3::ZERO), Some(Vec3::ZERO));
+        assert_eq!(free(Vec3::new(0.5, 0.0, 0.0)), Some(Vec3::X));
+        assert_eq!(free(Vec3::new(0.5, 0.5, 0.0)), Some(Vec3::new(1.0, 1.0, 0.0)));
+        assert_eq!(free(Vec3::splat(0.5)), None);
+    }
+
+    #[test]
+    fn prescribed_velocities_meet_rollers_at_edges() {
+        let mesh = box_mesh(Vec3::ONE, [1, 1, 1]).unwrap();
+        let velocity = [None, None, Some(-2.0)];
+        let function = Function::Ramp { duration: 4.0 };
+        let plate = boundary(&mesh, &["z-max"], BoundaryKind::Prescribed { velocity, function });
+        let side = boundary(&mesh, &["x-min"], BoundaryKind::Roller);
+        let mut constraints = Constraints::new(&mesh, &[side, plate]);
+        constraints.set_time(1.0, true);
+        let node = mesh.nodes.iter().position(|x| x.x == 0.0 && x.z == 1.0).unwrap() as u32;
+        let edge = constraints.of(node).unwrap();
+        assert_eq!(constraints.prescribed(edge), Vec3::new(0.0, 0.0, -0.5));
+        assert_eq!(edge.free * Vec3::ONE, Vec3::Y);
+    }
+}

@@ -1,0 +1,97 @@
+//! Loads on surfaces, carried by particles.
+//!
+//! Each triangle has three surface points with equal shares of its area, at barycentric
+//! coordinates 2/3, 1/6, 1/6 (exact for pressures linear over the triangle). A point is bound to
+//! the nearest particle of its body in the element and keeps its offset from it; its force acts
+//! on the nodes of the particle's element with the shape functions at the point, extrapolated
+//! where the point lies outside. Force and moment are then right wherever the particle goes.
+
+use crate::Vec3;
+use crate::mesh::{Face, Mesh};
+use crate::particles::Particles;
+use crate::plan::{Load, LoadKind};
+
+/// Barycentric coordinates of the surface points of a triangle.
+const POINTS: [[f64; 3]; 3] = {
+    let (a, b) = (2.0 / 3.0, 1.0 / 6.0);
+    [[a, b, b], [b, a, b], [b, b, a]]
+};
+
+/// A point of a loaded surface.
+#[derive(Clone, Debug)]
+pub struct LoadPoint {
+    /// Index into the plan's loads.
+    pub load: u32,
+    /// Place of the particle that carries it in the particle arrays.
+    pub particle: u32,
+    /// Point minus particle, m.
+    pub offset: Vec3,
+    /// Force at function value 1, N.
+    pub force: Vec3,
+}
+
+/// A loaded surface has a triangle that its body does not touch.
+#[derive(Debug, thiserror::Error, PartialEq)]
+#[error("load `{load}`: body has no particles next to {count} of the surface's {total} triangles")]
+pub struct LoadError {
+    pub load: String,
+    pub count: usize,
+    pub total: usize,
+}
+
+/// The points of all loads. `offsets` are the first particles of the elements.
+pub fn load_points(
+    mesh: &Mesh,
+    loads: &[Load],
+    particles: &Particles,
+    offsets: &[u32],
+) -> Result<Vec<LoadPoint>, LoadError> {
+    let mut points = Vec::new();
+    for (number, load) in loads.iter().enumerate() {
+        let faces: Vec<Face> =
+            load.surfaces.iter().flat_map(|&s| mesh.surfaces[s].faces.iter().copied()).collect();
+        let total: f64 = faces.iter().map(|&f| mesh.face_area(f).length()).sum();
+        let mut missing = 0;
+        for &face in &faces {
+            let Some(side) = side_of_body(mesh, face, load.body, particles, offsets) else {
+                missing += 1;
+                continue;
+            };
+            let area = mesh.face_area(side);
+            let force = match load.kind {
+                LoadKind::Traction(t) => t * area.length(),
+                LoadKind::Pressure(p) => -area * p,
+                LoadKind::Force(f) => f * (area.length() / total),
+            } / 3.0;
+            let corners = mesh.face_nodes(side).map(|n| mesh.nodes[n as usize]);
+            for weights in POINTS {
+                let x: Vec3 = (0..3).map(|i| corners[i] * weights[i]).sum();
+                let particle = nearest(x, side.element, load.body, particles, offsets);
+                let offset = x - particles.position[particle as usize];
+                points.push(LoadPoint { load: number as u32, particle, offset, force });
+            }
+        }
+        if missing > 0 {
+            return Err(LoadError { load: load.name.clone(), count: missing, total: faces.len() });
+        }
+    }
+    Ok(points)
+}
+
+fn in_element(e: u32, offsets: &[u32]) -> std::ops::Range<usize> {
+    offsets[e as usize] as usize..offsets[e as usize + 1] as usize
+}
+
+/// The face seen from the element that holds particles of the body.
+fn side_of_body(mesh: &Mesh, face: Face, body: usize, particles: &Particles, offsets: &[u32]) -> Option<Face> {
+    let holds = |f: &Face| in_element(f.element, offsets).any(|p| usize::from(particles.body[p]) == body);
+    Some(face).filter(holds).or_else(|| mesh.across(face).filter(holds))
+}
+
+fn nearest(x: Vec3, e: u32, body: usize, particles: &Particles, offsets: &[u32]) -> u32 {
+    let distance = |p: &usize| (particles.position[*p] - x).length_squared();
+    in_element(e, offsets)
+        .filter(|&p| usize::from(particles.body[p]) == body)
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .expect("the side of the body holds its particles") as u32
+}

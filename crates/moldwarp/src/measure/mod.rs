@@ -1,0 +1,7 @@
+//! What is measured: the balance of energy, and probes.
+
+mod ledger;
+mod probe;
+
+pub use ledger::{DriftWork, Energies, KickWork, Ledger};
+pub use probe::Probes;

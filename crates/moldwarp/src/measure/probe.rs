@@ -1,0 +1,232 @@
+//! Probes: quantities on surfaces, at points and of bodies over time.
+//!
+//! A surface that carries a boundary is measured on its nodes (area-weighted mean; displacement
+//! is the integral of nodal velocity, the reaction a sum), any other surface on the particles
+//! seeded next to it; a point on the particle nearest to it at the start; a body on the
+//! mass-weighted mean of its particles.
+
+use crate::Vec3;
+use crate::mesh::Mesh;
+use crate::parallel::fold;
+use crate::particles::Particles;
+use crate::plan::{Plan, Probe, Quantity, Target};
+use crate::simulation::Simulation;
+use crate::tensor::Voigt;
+use std::ops::Range;
+
+/// What one probe looks at.
+#[derive(Clone, Debug)]
+enum Place {
+    Nodes { nodes: Vec<SurfaceNode>, elements: Vec<(u32, f64)> },
+    /// Places in the particle arrays with weights that sum to 1.
+    Particles(Vec<(u32, f64)>),
+    Body(u16),
+}
+
+#[derive(Clone, Debug)]
+struct SurfaceNode {
+    node: u32,
+    /// Share of the surface's area.
+    weight: f64,
+    start: Vec3,
+    displacement: Vec3,
+}
+
+/// All probes of a simulation.
+#[derive(Clone, Debug, Default)]
+pub struct Probes {
+    places: Vec<Place>,
+}
+
+impl Probes {
+    /// `offsets` are the first particles of the elements.
+    pub(crate) fn new(plan: &Plan, particles: &Particles, offsets: &[u32]) -> Probes {
+        let place = |probe: &Probe| match probe.target {
+            Target::Surface(s) if plan.boundaries.iter().any(|b| b.surfaces.contains(&s)) => {
+                boundary_surface(&plan.mesh, s, offsets)
+            }
+            Target::Surface(s) => Place::Particles(next_to(&plan.mesh, s, offsets)),
+            Target::Point(x) => {
+                let distance = |p: &usize| (particles.position[*p] - x).length_squared();
+                let nearest = (0..particles.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                Place::Particles(vec![(nearest.unwrap_or(0) as u32, 1.0)])
+            }
+            Target::Body(b) => Place::Body(b as u16),
+        };
+        Probes { places: plan.probes.iter().map(place).collect() }
+    }
+
+    /// Follows particles to their new places.
+    pub(crate) fn reorder(&mut self, destination: &[u32]) {
+        for place in &mut self.places {
+            if let Place::Particles(particles) = place {
+                particles.iter_mut().for_each(|p| p.0 = destination[p.0 as usize]);
+            }
+        }
+    }
+
+    /// Adds the last drift to the displacements of surface nodes.
+    pub(crate) fn add_drift(&mut self, moved: impl Fn(u32) -> Vec3) {
+        for place in &mut self.places {
+            if let Place::Nodes { nodes, .. } = place {
+                nodes.iter_mut().for_each(|n| n.displacement += moved(n.node));
+            }
+        }
+    }
+
+    /// Name and unit of each column.
+    pub(crate) fn columns(plan: &Plan) -> Vec<(String, &'static str)> {
+        let mut columns = Vec::new();
+        for probe in &plan.probes {
+            for quantity in &probe.quantities {
+                for component in quantity.components() {
+                    let name = format!("{}.{}.{component}", probe.name, quantity.name());
+                    columns.push((name, quantity.unit()));
+                }
+            }
+        }
+        columns
+    }
+
+    /// Appends the values of all columns.
+    pub(crate) fn values(&self, sim: &Simulation, out: &mut Vec<f64>) {
+        for (probe, place) in sim.plan().probes.iter().zip(&self.places) {
+            for &quantity in &probe.quantities {
+                if quantity == Quantity::Stress {
+                    out.extend(place.stress(sim));
+                } else {
+                    out.extend(place.vector(sim, quantity).to_array());
+                }
+            }
+        }
+    }
+}
+
+impl Place {
+    fn vector(&self, sim: &Simulation, quantity: Quantity) -> Vec3 {
+        match self {
+            Place::Nodes { nodes, .. } => {
+                let weight = |n: &SurfaceNode| if quantity == Quantity::Reaction { 1.0 } else { n.weight };
+                nodes.iter().map(|n| n.vector(sim, quantity) * weight(n)).sum()
+            }
+            Place::Particles(particles) => {
+                particles.iter().map(|&(p, w)| particle_vector(sim, p as usize, quantity) * w).sum()
+            }
+            Place::Body(body) => {
+                let mean = body_mean(sim, *body, |p| particle_vector(sim, p, quantity).to_array());
+                Vec3::from_array(mean)
+            }
+        }
+    }
+
+    fn stress(&self, sim: &Simulation) -> Voigt {
+        let mut mean = [0.0; 6];
+        match self {
+            Place::Nodes { elements, .. } => {
+                for &(e, weight) in elements {
+                    if let Some(stress) = sim.element_stress(e) {
+                        crate::tensor::add_scaled(&mut mean, &stress, weight);
+                    }
+                }
+            }
+            Place::Particles(particles) => {
+                for &(p, weight) in particles {
+                    crate::tensor::add_scaled(&mut mean, &sim.particles().stress[p as usize], weight);
+                }
+            }
+            Place::Body(body) => mean = body_mean(sim, *body, |p| sim.particles().stress[p]),
+        }
+        mean
+    }
+}
+
+impl SurfaceNode {
+    fn vector(&self, sim: &Simulation, quantity: Quantity) -> Vec3 {
+        let node = sim.node(self.node);
+        match quantity {
+            Quantity::Displacement => self.displacement,
+            Quantity::Position => self.start + self.displacement,
+            Quantity::Velocity => node.map_or(Vec3::ZERO, |n| n.grid_velocity),
+            Quantity::Acceleration => node.map_or(Vec3::ZERO, |n| n.acceleration),
+            Quantity::Reaction => node.map_or(Vec3::ZERO, |n| n.reaction + n.absorbing),
+            Quantity::Stress => Vec3::ZERO,
+        }
+    }
+}
+
+fn particle_vector(sim: &Simulation, p: usize, quantity: Quantity) -> Vec3 {
+    let particles = sim.particles();
+    match quantity {
+        Quantity::Displacement => particles.displacement[p],
+        Quantity::Position => particles.position[p],
+        Quantity::Velocity => particles.velocity[p],
+        Quantity::Acceleration => sim.acceleration_at(p),
+        Quantity::Reaction | Quantity::Stress => Vec3::ZERO,
+    }
+}
+
+/// Mass-weighted mean over the particles of a body.
+fn body_mean<const N: usize>(
+    sim: &Simulation,
+    body: u16,
+    value: impl Fn(usize) -> [f64; N] + Sync,
+) -> [f64; N]
+where
+    [f64; N]: Default,
+{
+    let particles = sim.particles();
+    let (sum, mass) = fold(0..particles.len(), 4096, &|range: Range<usize>| {
+        let mut sum = (<[f64; N]>::default(), 0.0);
+        for p in range.filter(|&p| particles.body[p] == body) {
+            let m = particles.mass[p];
+            let x = value(p);
+            (0..N).for_each(|k| sum.0[k] += m * x[k]);
+            sum.1 += m;
+        }
+        sum
+    });
+    sum.map(|x| x / mass)
+}
+
+fn boundary_surface(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Place {
+    let faces = &mesh.surfaces[surface].faces;
+    let area: f64 = faces.iter().map(|&f| mesh.face_area(f).length()).sum();
+    let mut shares: Vec<(u32, f64)> = faces
+        .iter()
+        .flat_map(|&f| mesh.face_nodes(f).map(|n| (n, mesh.face_area(f).length() / (3.0 * area))))
+        .collect();
+    shares.sort_by_key(|s| s.0);
+    let nodes = shares.chunk_by(|a, b| a.0 == b.0).map(|same| SurfaceNode {
+        node: same[0].0,
+        weight: same.iter().map(|s| s.1).sum(),
+        start: mesh.nodes[same[0].0 as usize],
+        displacement: Vec3::ZERO,
+    });
+    Place::Nodes { nodes: nodes.collect(), elements: occupied_elements(mesh, surface, offsets) }
+}
+
+/// Elements with particles next to a surface, with their shares of its area.
+fn occupied_elements(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Vec<(u32, f64)> {
+    let occupied = |e: u32| offsets[e as usize] < offsets[e as usize + 1];
+    let mut elements = Vec::new();
+    for &face in &mesh.surfaces[surface].faces {
+        let sides = [Some(face), mesh.across(face)];
+        if let Some(side) = sides.into_iter().flatten().find(|f| occupied(f.element)) {
+            elements.push((side.element, mesh.face_area(side).length()));
+        }
+    }
+    let total: f64 = elements.iter().map(|e| e.1).sum();
+    elements.iter().map(|&(e, area)| (e, area / total)).collect()
+}
+
+/// Particles next to a surface; those of an element share its faces' area equally.
+fn next_to(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Vec<(u32, f64)> {
+    occupied_elements(mesh, surface, offsets)
+        .into_iter()
+        .flat_map(|(e, weight)| {
+            let range = offsets[e as usize]..offsets[e as usize + 1];
+            let share = weight / f64::from(range.end - range.start);
+            range.map(move |p| (p, share))
+        })
+        .collect()
+}

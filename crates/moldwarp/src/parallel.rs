@@ -1,0 +1,208 @@
+//! Work on many items by any number of threads, with the same bits for all of them.
+//!
+//! Items are cut into blocks of a fixed size; each block is worked on by one thread in order; the
+//! sums that blocks return are added pairwise along a tree whose shape depends on the number of
+//! items alone. Nothing is allocated.
+
+use std::ops::Range;
+
+/// Something that can be cut in two.
+pub trait Split: Send + Sized {
+    fn count(&self) -> usize;
+    /// The first `at` items and the rest.
+    fn split(self, at: usize) -> (Self, Self);
+}
+
+/// Something that adds up.
+pub trait Sum: Default + Send {
+    fn plus(self, other: Self) -> Self;
+}
+
+/// Calls `work` on blocks of at most `block` items and adds up what it returns.
+pub fn fold<S: Split, T: Sum>(items: S, block: usize, work: &(impl Fn(S) -> T + Sync)) -> T {
+    let count = items.count();
+    if count <= block {
+        return work(items);
+    }
+    let at = count.div_ceil(block).div_ceil(2) * block;
+    let (low, high) = items.split(at);
+    let (low, high) = rayon::join(|| fold(low, block, work), || fold(high, block, work));
+    low.plus(high)
+}
+
+impl Split for Range<usize> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        (self.start..self.start + at, self.start + at..self.end)
+    }
+}
+
+impl<T: Send> Split for &mut [T] {
+    fn count(&self) -> usize {
+        self.len()
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        self.split_at_mut(at)
+    }
+}
+
+impl<T: Sync> Split for &[T] {
+    fn count(&self) -> usize {
+        self.len()
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        self.split_at(at)
+    }
+}
+
+impl<A: Split, B: Split> Split for (A, B) {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        let ((a, c), (b, d)) = (self.0.split(at), self.1.split(at));
+        ((a, b), (c, d))
+    }
+}
+
+impl<A: Split, B: Split, C: Split> Split for (A, B, C) {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        let ((a, x), (b, y), (c, z)) = (self.0.split(at), self.1.split(at), self.2.split(at));
+        ((a, b, c), (x, y, z))
+    }
+}
+
+/// Cells with the parts of particle arrays that lie in them: a cut between two cells cuts the
+/// arrays at the first particle of the second one.
+pub struct ByCell<'a, P> {
+    /// Cell numbers.
+    pub cells: Range<usize>,
+    /// Number of the first particle of each cell, and one past the last.
+    pub offsets: &'a [u32],
+    /// Arrays over the particles of `cells`.
+    pub particles: P,
+}
+
+impl<'a, P: Split> ByCell<'a, P> {
+    /// All cells with arrays over all particles.
+    pub fn new(offsets: &'a [u32], particles: P) -> ByCell<'a, P> {
+        ByCell { cells: 0..offsets.len() - 1, offsets, particles }
+    }
+
+    /// Number of the first particle.
+    pub fn first(&self) -> usize {
+        self.offsets[self.cells.start] as usize
+    }
+}
+
+impl<P: Split> Split for ByCell<'_, P> {
+    fn count(&self) -> usize {
+        self.cells.len()
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        let first = self.first();
+        let (low, high) = self.cells.split(at);
+        let (before, after) = self.particles.split(self.offsets[high.start] as usize - first);
+        (
+            ByCell { cells: low, offsets: self.offsets, particles: before },
+            ByCell { cells: high, offsets: self.offsets, particles: after },
+        )
+    }
+}
+
+impl Sum for () {
+    fn plus(self, (): ()) {}
+}
+
+impl Sum for f64 {
+    fn plus(self, other: f64) -> f64 {
+        self + other
+    }
+}
+
+impl<const N: usize> Sum for [f64; N]
+where
+    [f64; N]: Default,
+{
+    fn plus(mut self, other: [f64; N]) -> [f64; N] {
+        for k in 0..N {
+            self[k] += other[k];
+        }
+        self
+    }
+}
+
+/// The smallest of many values; infinity of none.
+#[derive(Clone, Copy, Debug)]
+pub struct Smallest(pub f64);
+
+impl Default for Smallest {
+    fn default() -> Smallest {
+        Smallest(f64::INFINITY)
+    }
+}
+
+impl Sum for Smallest {
+    fn plus(self, other: Smallest) -> Smallest {
+        // NaN must win, so that it is noticed.
+        Smallest(if self.0 <= other.0 || self.0.is_nan() { self.0 } else { other.0 })
+    }
+}
+
+/// The first of many indices; `u32::MAX` of none.
+#[derive(Clone, Copy, Debug)]
+pub struct First(pub u32);
+
+impl Default for First {
+    fn default() -> First {
+        First(u32::MAX)
+    }
+}
+
+impl Sum for First {
+    fn plus(self, other: First) -> First {
+        First(self.0.min(other.0))
+    }
+}
+
+impl<A: Sum, B: Sum> Sum for (A, B) {
+    fn plus(self, other: (A, B)) -> (A, B) {
+        (self.0.plus(other.0), self.1.plus(other.1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum_with(threads: usize, values: &[f64]) -> f64 {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fold(values, 7, &|part: &[f64]| part.iter().sum::<f64>()))
+    }
+
+    #[test]
+    fn a_sum_has_the_same_bits_for_any_number_of_threads() {
+        let values: Vec<f64> = (0..1000).map(|i| 1.0 / (1.0 + f64::from(i))).collect();
+        let one = sum_with(1, &values);
+        assert!((one - values.iter().sum::<f64>()).abs() < 1e-12);
+        for threads in [2, 3, 8] {
+            assert_eq!(one.to_bits(), sum_with(threads, &values).to_bits());
+        }
+    }
+
+    #[test]
+    fn particles_are_cut_where_cells_are() {
+        let offsets = [0, 2, 2, 5, 6];
+        let mut data: Vec<u32> = (0..6).collect();
+        let all = ByCell::new(&offsets, &mut data[..]);
+        fold(all, 1, &|one: ByCell<&mut [u32]>| {
+            let (from, to) = (one.offsets[one.cells.start], one.offsets[one.cells.end]);
+            assert_eq!(one.particles.iter().copied().collect::<Vec<_>>(), (from..to).collect::<Vec<_>>());
+        });
+    }
+}

@@ -1,0 +1,61 @@
+//! Keeping particles ordered by element.
+
+use super::Particles;
+use crate::Vec3;
+use crate::tensor::Voigt;
+
+/// Working arrays of the sort, kept so that no step allocates.
+#[derive(Clone, Debug, Default)]
+pub struct Order {
+    /// Number of the first particle of each element, and one past the last.
+    pub offsets: Vec<u32>,
+    /// Where each particle went in the last sort: new place by old place.
+    pub destination: Vec<u32>,
+    vectors: Vec<Vec3>,
+    stresses: Vec<Voigt>,
+    numbers: Vec<f64>,
+    indices: Vec<u32>,
+    bodies: Vec<u16>,
+}
+
+impl Order {
+    /// Sorts by element, keeping the order within each (a counting sort).
+    pub fn sort(&mut self, particles: &mut Particles, elements: usize) {
+        self.offsets.clear();
+        self.offsets.resize(elements + 1, 0);
+        for &e in &particles.element {
+            self.offsets[e as usize + 1] += 1;
+        }
+        for e in 0..elements {
+            self.offsets[e + 1] += self.offsets[e];
+        }
+        self.destination.resize(particles.len(), 0);
+        for (p, &e) in particles.element.iter().enumerate() {
+            let next = &mut self.offsets[e as usize];
+            self.destination[p] = *next;
+            *next += 1;
+        }
+        // Each offset has moved on to the next element's; move them back.
+        self.offsets.copy_within(0..elements, 1);
+        self.offsets[0] = 0;
+        let to = &self.destination;
+        permute(to, &mut particles.id, &mut self.indices);
+        permute(to, &mut particles.element, &mut self.indices);
+        permute(to, &mut particles.body, &mut self.bodies);
+        permute(to, &mut particles.position, &mut self.vectors);
+        permute(to, &mut particles.velocity, &mut self.vectors);
+        permute(to, &mut particles.displacement, &mut self.vectors);
+        permute(to, &mut particles.stress, &mut self.stresses);
+        permute(to, &mut particles.volume, &mut self.numbers);
+        permute(to, &mut particles.initial_volume, &mut self.numbers);
+        permute(to, &mut particles.mass, &mut self.numbers);
+    }
+}
+
+fn permute<T: Copy + Default>(destination: &[u32], values: &mut Vec<T>, spare: &mut Vec<T>) {
+    spare.resize(values.len(), T::default());
+    for (&to, &value) in destination.iter().zip(values.iter()) {
+        spare[to as usize] = value;
+    }
+    std::mem::swap(values, spare);
+}

@@ -1,0 +1,141 @@
+//! Filling bodies with particles of equal volume in each element.
+
+use super::Particles;
+use crate::Vec3;
+use crate::mesh::Mesh;
+use crate::plan::{Body, NamedMaterial, Place, Seeding};
+
+/// Distance from centroid to corner at which the four-point rule, exact for quadratics, sits:
+/// barycentric coordinates (1+3s)/4 and (1−s)/4 thrice, s = 1/√5.
+const FOUR: f64 = 0.447_213_595_499_957_94;
+/// The ten nodes of a quadratic tetrahedron drawn towards the centroid by 1/√3: with equal
+/// weights they integrate quadratics exactly.
+const TEN: f64 = 0.577_350_269_189_625_8;
+
+impl Seeding {
+    /// Barycentric coordinates of the particles of an element. Their mean is the centroid, so
+    /// that linear fields are integrated exactly.
+    pub fn points(self) -> Vec<[f64; 4]> {
+        let drawn = |corner: [f64; 4], share: f64| corner.map(|n| 0.25 + (n - 0.25) * share);
+        let corner = |i: usize| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 });
+        let middle = |i: usize, k: usize| std::array::from_fn(|j| if i == j || k == j { 0.5 } else { 0.0 });
+        match self {
+            Seeding::One => vec![[0.25; 4]],
+            Seeding::Four => (0..4).map(|i| drawn(corner(i), FOUR)).collect(),
+            Seeding::Ten => {
+                let corners = (0..4).map(|i| drawn(corner(i), TEN));
+                let edges = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+                corners.chain(edges.iter().map(|&(i, k)| drawn(middle(i, k), TEN))).collect()
+            }
+        }
+    }
+}
+
+/// Why bodies could not be filled.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum SeedingError {
+    #[error("body `{body}` has no particles: its region holds no seeding point of any element")]
+    Empty { body: String },
+    #[error("bodies `{first}` and `{second}` overlap in element {element}")]
+    Overlap { first: String, second: String, element: u32 },
+}
+
+/// A particle to be.
+struct Seed {
+    element: u32,
+    position: Vec3,
+    volume: f64,
+    body: u16,
+}
+
+/// Particles of all bodies, ordered by element.
+pub fn seed(
+    mesh: &Mesh,
+    bodies: &[Body],
+    materials: &[NamedMaterial],
+) -> Result<Particles, SeedingError> {
+    let mut found = Vec::new();
+    for (b, body) in bodies.iter().enumerate() {
+        let before = found.len();
+        fill(mesh, body, b as u16, &mut found);
+        if found.len() == before {
+            return Err(SeedingError::Empty { body: body.name.clone() });
+        }
+    }
+    found.sort_by_key(|s| (s.element, s.body));
+    check_overlap(&found, bodies, mesh)?;
+    let mut particles = Particles::default();
+    for (id, seed) in found.into_iter().enumerate() {
+        let density = materials[bodies[seed.body as usize].material].density;
+        particles.id.push(id as u32);
+        particles.body.push(seed.body);
+        particles.element.push(seed.element);
+        particles.position.push(seed.position);
+        particles.velocity.push(Vec3::ZERO);
+        particles.displacement.push(Vec3::ZERO);
+        particles.stress.push([0.0; 6]);
+        particles.volume.push(seed.volume);
+        particles.initial_volume.push(seed.volume);
+        particles.mass.push(density * seed.volume);
+    }
+    Ok(particles)
+}
+
+fn fill(mesh: &Mesh, body: &Body, number: u16, found: &mut Vec<Seed>) {
+    let rule = body.seeding.points();
+    let mut seed_element = |element: u32, wanted: &dyn Fn(Vec3) -> bool| {
+        let corners = mesh.corners(element as usize);
+        let volume = mesh.volumes[element as usize] / rule.len() as f64;
+        for n in &rule {
+            let position = (0..4).map(|i| n[i] * corners[i]).sum();
+            if wanted(position) {
+                found.push(Seed { element, position, volume, body: number });
+            }
+        }
+    };
+    match &body.place {
+        Place::VolumeGroup(group) => {
+            let elements = &mesh.volume_groups[*group].elements;
+            elements.iter().for_each(|&e| seed_element(e, &|_| true));
+        }
+        Place::Region(region) => {
+            (0..mesh.tets.len() as u32).for_each(|e| seed_element(e, &|x| region.contains(x)));
+        }
+    }
+}
+
+/// Two bodies overlap where both seed the same point, or more volume than the element has.
+fn check_overlap(found: &[Seed], bodies: &[Body], mesh: &Mesh) -> Result<(), SeedingError> {
+    for seeds in found.chunk_by(|a, b| a.element == b.element) {
+        let (first, element) = (seeds[0].body, seeds[0].element);
+        let Some(other) = seeds.iter().find(|s| s.body != first) else { continue };
+        let volume: f64 = seeds.iter().map(|s| s.volume).sum();
+        let twice = |i: usize| seeds[..i].iter().any(|s| s.position == seeds[i].position);
+        if volume > mesh.volumes[element as usize] * (1.0 + 1e-9) || (0..seeds.len()).any(twice) {
+            return Err(SeedingError::Overlap {
+                first: bodies[first as usize].name.clone(),
+                second: bodies[other.body as usize].name.clone(),
+                element,
+            });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫ λ_a λ_b over a tetrahedron of volume 1 is 1/10 for a = b and 1/20 otherwise.
+    #[test]
+    fn four_and_ten_points_integrate_quadratics() {
+        for rule in [Seeding::Four, Seeding::Ten] {
+            let points = rule.points();
+            let mean = |f: &dyn Fn(&[f64; 4]) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
+            assert!((mean(&|n| n[1]) - 0.25).abs() < 1e-15);
+            assert!((mean(&|n| n[2] * n[2]) - 0.1).abs() < 1e-15);
+            assert!((mean(&|n| n[0] * n[3]) - 0.05).abs() < 1e-15);
+        }
+        assert_eq!(Seeding::One.points(), [[0.25; 4]]);
+    }
+}

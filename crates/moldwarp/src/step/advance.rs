@@ -1,0 +1,75 @@
+//! Stages 7 and 8: particles move with the nodes, the mesh follows its boundaries, and each
+//! particle's element is found anew.
+
+use super::BLOCK;
+use crate::Vec3;
+use crate::parallel::{ByCell, First, fold};
+use crate::simulation::{Simulation, Stop};
+
+pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
+    move_particles(sim);
+    if sim.follower.moves() {
+        let Simulation { plan, active, nodes, follower, .. } = sim;
+        follower.follow(&mut plan.mesh, |node| {
+            nodes.get(active.slot_of_node[node as usize] as usize).map_or(Vec3::ZERO, |n| n.moved)
+        });
+    }
+    if locate(sim)? {
+        sim.reorder();
+    }
+    Ok(())
+}
+
+/// x_p += Σ N_i Δu_i (Jassim et al. Eq. 9).
+fn move_particles(sim: &mut Simulation) {
+    let Simulation { plan, particles, active, nodes, ledger, .. } = sim;
+    let (mesh, active, nodes, gravity) = (&plan.mesh, &*active, &nodes[..], plan.gravity);
+    let mass = &particles.mass;
+    let arrays = (&mut particles.position[..], &mut particles.displacement[..]);
+    let block = ByCell::new(&active.offsets, arrays);
+    let lifted = fold(block, BLOCK, &|block: ByCell<(&mut [Vec3], &mut [Vec3])>| {
+        let first = block.first();
+        let (positions, displacements) = block.particles;
+        let mut work = 0.0;
+        for c in block.cells {
+            let e = active.elements[c] as usize;
+            let moved = active.cell_nodes[c].map(|n| nodes[n as usize].moved);
+            for p in active.offsets[c] as usize..active.offsets[c + 1] as usize {
+                let n = mesh.barycentric(e, positions[p - first]);
+                let step: Vec3 = (0..4).map(|i| moved[i] * n[i]).sum();
+                positions[p - first] += step;
+                displacements[p - first] += step;
+                work += mass[p] * gravity.dot(step);
+            }
+        }
+        work
+    });
+    ledger.gravity_work(lifted);
+}
+
+/// Walks each particle to its element; says whether any has a new one.
+fn locate(sim: &mut Simulation) -> Result<bool, Stop> {
+    let Simulation { plan, particles, active, .. } = sim;
+    let (mesh, position) = (&plan.mesh, &particles.position);
+    let block = ByCell::new(&active.offsets, &mut particles.element[..]);
+    let (outside, crossed) = fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {
+        let first = block.first();
+        let (mut outside, mut crossed) = (First::default(), First::default());
+        for (k, element) in block.particles.iter_mut().enumerate() {
+            let p = first + k;
+            match mesh.walk(*element, position[p]) {
+                Some(found) if found == *element => {}
+                Some(found) => {
+                    *element = found;
+                    crossed.0 = crossed.0.min(p as u32);
+                }
+                None => outside.0 = outside.0.min(p as u32),
+            }
+        }
+        (outside, crossed)
+    });
+    if outside.0 != u32::MAX {
+        return Err(sim.left_the_mesh(outside.0 as usize));
+    }
+    Ok(crossed.0 != u32::MAX)
+}

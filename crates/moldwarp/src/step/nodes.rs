@@ -1,0 +1,83 @@
+//! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
+//! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
+
+use super::{BLOCK, Node};
+use crate::Vec3;
+use crate::measure::KickWork;
+use crate::parallel::fold;
+use crate::simulation::Simulation;
+use crate::tensor;
+use std::ops::Range;
+
+pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
+    let h = before + after;
+    if h == 0.0 {
+        return;
+    }
+    apply_loads(sim);
+    let damping = sim.local_damping();
+    let Simulation { plan, active, nodes, cells, constraints, absorbing, ledger, .. } = sim;
+    let (active, mesh, gravity, cells) = (&*active, &plan.mesh, plan.gravity, &*cells);
+    let (constraints, absorbing) = (&*constraints, &*absorbing);
+    let backward = before > 0.0;
+    let items = (0..nodes.len(), &mut nodes[..]);
+    let work = fold(items, BLOCK, &|(slots, nodes): (Range<usize>, &mut [Node])| {
+        let mut work = KickWork::default();
+        for (slot, node) in slots.zip(nodes) {
+            if node.mass == 0.0 {
+                let grid = (node.grid_velocity, node.moved);
+                *node = Node { grid_velocity: grid.0, moved: grid.1, filling: node.filling, ..Node::default() };
+                continue;
+            }
+            let mesh_node = active.nodes[slot];
+            let internal: Vec3 = active
+                .attached(slot)
+                .iter()
+                .map(|&(c, local)| {
+                    let force = &cells.forces[c as usize];
+                    let gradient = mesh.all_gradients(active.elements[c as usize] as usize)[local as usize];
+                    let stress = std::array::from_fn(|k| force.stress[k] + force.viscous[k]);
+                    -tensor::times(&stress, gradient)
+                })
+                .sum();
+            let unbalanced = internal + gravity * node.mass + node.load;
+            node.damping = -damping * unbalanced.abs() * signs(node.velocity);
+            let mut force = unbalanced + node.damping;
+            node.absorbing = Vec3::ZERO;
+            if let Some(boundary) = absorbing.of(mesh_node) {
+                let end = boundary.solve(node.mass, node.velocity, force, h, constraints);
+                node.absorbing = boundary.force(end, h);
+                force += node.absorbing;
+            }
+            node.acceleration = force / node.mass;
+            if let Some(constraint) = constraints.of(mesh_node) {
+                let held = constraints.acceleration(constraint, node.velocity, h);
+                node.acceleration = constraint.free * node.acceleration + held;
+            }
+            node.reaction = node.acceleration * node.mass - force;
+            work.add(node, gravity, h, backward);
+        }
+        work
+    });
+    ledger.kick(work);
+}
+
+/// Loads on particles, at the shape functions of the points they act on.
+fn apply_loads(sim: &mut Simulation) {
+    let Simulation { plan, particles, active, nodes, loads, clock, .. } = sim;
+    let mesh = &plan.mesh;
+    for point in loads.iter() {
+        let p = point.particle as usize;
+        let e = particles.element[p] as usize;
+        let n = mesh.barycentric(e, particles.position[p] + point.offset);
+        let force = point.force * plan.loads[point.load as usize].function.value(clock.time);
+        for (i, &mesh_node) in mesh.tets[e].iter().enumerate() {
+            nodes[active.slot_of_node[mesh_node as usize] as usize].load += force * n[i];
+        }
+    }
+}
+
+/// −1, 0 or 1 per component.
+fn signs(v: Vec3) -> Vec3 {
+    v.to_array().map(|x| if x == 0.0 { 0.0 } else { x.signum() }).into()
+}

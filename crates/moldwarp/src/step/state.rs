@@ -1,0 +1,73 @@
+//! What the step keeps per node and per cell.
+
+use crate::tensor::Voigt;
+use crate::{Mat3, Vec3};
+
+/// A node that particles touch. Forces in N, work in J.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Node {
+    /// m_i = Σ m_p N_i, kg.
+    pub mass: f64,
+    /// v_i = Σ m_p v_p N_i / m_i before the kick, m/s.
+    pub velocity: Vec3,
+    /// (change of velocity in the kick) / h, m/s².
+    pub acceleration: Vec3,
+    /// Loads.
+    pub load: Vec3,
+    /// Local damping.
+    pub damping: Vec3,
+    /// Force of an absorbing boundary.
+    pub absorbing: Vec3,
+    /// Force of fixities, rollers and prescribed velocities.
+    pub reaction: Vec3,
+    /// Velocity after the remap, with which the mesh moves the material, m/s.
+    pub grid_velocity: Vec3,
+    /// Δu_i of the last drift, m.
+    pub moved: Vec3,
+    /// φ: volume of particles over volume of elements, of all elements attached.
+    pub filling: f64,
+    /// Mass over volume of all elements attached, kg/m³.
+    pub density: f64,
+    /// Averaged volumetric strain of the attached cells.
+    pub volumetric: f64,
+}
+
+/// Sums over the particles of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CellSums {
+    /// Σ m_p N_i for each node, kg.
+    pub mass: [f64; 4],
+    /// Σ m_p v_p N_i for each node, kg m/s; after stage 3 with the new velocities.
+    pub momentum: [Vec3; 4],
+    /// Σ σ_p V_p, J.
+    pub stress: Voigt,
+    /// Σ V_p, m³.
+    pub volume: f64,
+    /// Σ λ V_p and Σ G V_p, J.
+    pub moduli: [f64; 2],
+    /// Greatest constrained modulus of its particles, Pa.
+    pub wave_modulus: f64,
+}
+
+/// Stress times volume that acts on a cell's nodes: f_i = −S ∇N_i.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CellForce {
+    /// σ̄ V_e if filled, else Σ σ_p V_p, J.
+    pub stress: Voigt,
+    /// The viscous part, J.
+    pub viscous: Voigt,
+    /// Whether the cell counts as filled.
+    pub filled: bool,
+}
+
+/// Deformation of a cell in a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CellStrain {
+    /// ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step.
+    pub gradient: Mat3,
+    /// The same in the middle of the step, ∇Δu (I + ½∇Δu)⁻¹: a rigid rotation has none of it but
+    /// spin, and its trace is the logarithmic volume strain to third order.
+    pub midpoint: Mat3,
+    /// Trace of `midpoint`.
+    pub volumetric: f64,
+}

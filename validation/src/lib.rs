@@ -1,0 +1,2 @@
+//! Comparisons of moldwarp with exact solutions.
+pub mod exact;

@@ -1,1 +1,154 @@
 //! From scene.toml to a checked plan.
+//!
+//! Two steps: [`raw`] is what the user wrote, each value with its place in the text; the other
+//! files check one part of it each and turn it into the solver's [`Plan`] in SI units. After
+//! that nothing can be a slip of the user.
+
+mod amount;
+mod bodies;
+mod boundaries;
+mod document;
+mod error;
+mod functions;
+mod loads;
+mod materials;
+mod mesh;
+mod numerics;
+mod output;
+mod overrides;
+mod probes;
+mod quantity;
+mod raw;
+mod stages;
+mod suggest;
+mod surfaces;
+mod syntax;
+#[cfg(test)]
+mod tests;
+mod units;
+mod unsupported;
+mod values;
+
+pub use error::SceneError;
+pub use output::{Compare, Every, OutputSettings};
+
+use error::Fault;
+use moldwarp::Plan;
+use quantity::Dimension;
+use raw::RawScene;
+use std::path::{Path, PathBuf};
+
+/// A scene, read and checked.
+#[derive(Debug)]
+pub struct Scene {
+    /// What is computed, in SI units.
+    pub plan: Plan,
+    /// When results are written.
+    pub output: OutputSettings,
+    /// What the results are compared with.
+    pub compare: Vec<Compare>,
+    /// A short name: that of the scene's folder, with the file's if it is not scene.toml.
+    pub case: String,
+    /// Where the scene is; its paths are relative to this.
+    pub folder: PathBuf,
+    /// The TOML as run, with everything that was set.
+    pub text: String,
+    /// What the user should know though it is no error.
+    pub notes: Vec<String>,
+}
+
+/// Reads a scene from a file, or from scene.toml in a folder.
+///
+/// `sets` are changes `PATH=VALUE` to the text, for example `numerics.courant=0.4`; VALUE is
+/// TOML, else a text. Items of lists are given by number (from 0) or `name`.
+///
+/// # Errors
+///
+/// Whatever would keep the plan from being computed as written: an unreadable file, unknown
+/// keys and names, wrong units, values out of range, keys that exclude each other, a mesh that
+/// does not fit.
+pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
+    let file = match path.is_dir() {
+        true => path.join("scene.toml"),
+        false => path.to_owned(),
+    };
+    let name = file.display().to_string();
+    let original = std::fs::read_to_string(&file).map_err(|e| unreadable(&name, path, &e))?;
+    let (text, overrides) =
+        overrides::apply(&original, sets).map_err(|fault| fault.in_file(&name, &original))?;
+    let folder = match file.parent() {
+        Some(parent) if parent != Path::new("") => parent.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    syntax::parse(&text)
+        .and_then(|raw| check(&raw, &file, folder, &text))
+        .map_err(|fault| overrides::blame(fault, &text, &overrides).in_file(&name, &text))
+}
+
+fn unreadable(name: &str, path: &Path, error: &std::io::Error) -> SceneError {
+    let fault = match error.kind() {
+        std::io::ErrorKind::NotFound if path.is_dir() => {
+            Fault::new(format!("there is no scene in `{}`", path.display()))
+                .help("a scene's folder holds a file scene.toml; name another file directly")
+        }
+        std::io::ErrorKind::NotFound => Fault::new(format!("there is no scene `{name}`"))
+            .help("a scene is a TOML file, or a folder that holds scene.toml"),
+        _ => Fault::new(format!("the scene `{name}` cannot be read: {error}")),
+    };
+    fault.without_file()
+}
+
+fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Scene, Fault> {
+    let mut notes = Vec::new();
+    let case = case(file);
+    let gravity = values::vector("gravity", &raw.gravity, Dimension::Acceleration)?;
+    let numerics = numerics::numerics(&raw.numerics)?;
+    let output = output::output(&raw.output)?;
+    let materials = materials::materials(&raw.materials)?;
+    let mesh = mesh::mesh(&raw.mesh, &folder, &mut notes)?;
+    let bodies = bodies::bodies(&raw.bodies, &mesh, &materials)?;
+    let boundaries = boundaries::boundaries(&raw.boundaries, &mesh)?;
+    let loads = loads::loads(&raw.loads, &mesh, &bodies)?;
+    let probes = probes::probes(&raw.probes, &mesh, &bodies, &boundaries, &mut notes)?;
+    let stages = stages::stages(&raw.stages, &bodies)?;
+    let compare = output::compare(&raw.compare, &probes, &folder)?;
+    for (m, material) in materials.iter().enumerate() {
+        if !bodies.iter().any(|b| b.material == m) {
+            notes.push(format!("no body is made of material `{}`", material.name));
+        }
+    }
+    Ok(Scene {
+        plan: Plan {
+            title: raw.title.clone().unwrap_or_else(|| case.clone()),
+            gravity,
+            mesh,
+            materials,
+            bodies,
+            boundaries,
+            loads,
+            probes,
+            numerics,
+            stages,
+        },
+        output,
+        compare,
+        case,
+        folder,
+        text: text.to_owned(),
+        notes,
+    })
+}
+
+/// `slope` for slope/scene.toml, `slope-steep` for slope/steep.toml.
+fn case(file: &Path) -> String {
+    let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+    let real = absolute.canonicalize().unwrap_or(absolute);
+    let folder = real.parent().and_then(Path::file_name);
+    let folder = folder.map(|f| f.to_string_lossy().into_owned());
+    let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned());
+    match (folder, stem.as_deref()) {
+        (Some(folder), Some("scene") | None) => folder,
+        (Some(folder), Some(stem)) => format!("{folder}-{stem}"),
+        (None, stem) => stem.unwrap_or("scene").to_owned(),
+    }
+}

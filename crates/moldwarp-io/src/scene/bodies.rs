@@ -1,0 +1,201 @@
+//! Bodies: which part of the mesh is filled with which material.
+
+use super::amount::{Named, RawVector, Spanned};
+use super::error::Fault;
+use super::quantity::Dimension;
+use super::raw::{RawBody, RawRegion, Text};
+use super::values::{choose, exactly_one, find, foreign, placed, positive, required, span, vector};
+use moldwarp::plan::{Body, NamedMaterial, Place, Region, Seeding};
+use moldwarp::{Mesh, Vec3};
+
+pub(super) fn bodies(
+    raw: &Named<RawBody>,
+    mesh: &Mesh,
+    materials: &[NamedMaterial],
+) -> Result<Vec<Body>, Fault> {
+    if raw.0.is_empty() {
+        return Err(Fault::new("the scene has no bodies")
+            .help("add one: [bodies.layer] with volume = \"…\" and material = \"…\""));
+    }
+    let mut bodies: Vec<Body> = Vec::new();
+    for (name, raw) in &raw.0 {
+        let body = body(name, raw, mesh, materials)?;
+        if let (Place::VolumeGroup(_), Some(volume)) = (&body.place, &raw.volume)
+            && let Some(other) = bodies.iter().find(|b| b.place == body.place)
+        {
+            return Err(
+                Fault::new(format!("two bodies fill the volume `{}`", volume.get_ref()))
+                    .at(volume.span(), format!("already filled by `{}`", other.name))
+                    .help("a place can hold one body only"),
+            );
+        }
+        bodies.push(body);
+    }
+    Ok(bodies)
+}
+
+fn body(
+    name: &Text,
+    raw: &RawBody,
+    mesh: &Mesh,
+    materials: &[NamedMaterial],
+) -> Result<Body, Fault> {
+    exactly_one(
+        (name.span(), "a body"),
+        &[("volume", span(&raw.volume)), ("region", span(&raw.region))],
+    )?;
+    let place = match (&raw.volume, &raw.region) {
+        (Some(volume), _) => volume_group(volume, mesh)?,
+        (None, Some(region)) => Place::Region(checked_region(region, mesh)?),
+        (None, None) => return Err(Fault::new("a body needs a place")),
+    };
+    let names = materials.iter().map(|m| m.name.as_str());
+    Ok(Body {
+        name: name.get_ref().clone(),
+        place,
+        material: find(placed(&raw.material), "material", "materials", names)?,
+        seeding: seeding(raw.particles_per_element.as_ref())?,
+    })
+}
+
+fn volume_group(volume: &Text, mesh: &Mesh) -> Result<Place, Fault> {
+    let names = mesh.volume_groups.iter().map(|g| g.name.as_str());
+    let group = find(placed(volume), "volume", "volumes of the mesh", names)?;
+    if mesh.volume_groups[group].elements.is_empty() {
+        return Err(Fault::new("this body would have no particles")
+            .at(volume.span(), "the volume has no elements")
+            .help("choose another volume, or mesh this one"));
+    }
+    Ok(Place::VolumeGroup(group))
+}
+
+fn seeding(raw: Option<&Spanned<i64>>) -> Result<Seeding, Fault> {
+    match raw {
+        None => Ok(Seeding::Four),
+        Some(n) => match n.get_ref() {
+            1 => Ok(Seeding::One),
+            4 => Ok(Seeding::Four),
+            10 => Ok(Seeding::Ten),
+            _ => Err(Fault::new("`particles_per_element` must be 1, 4 or 10")
+                .at(n.span(), "there is no such pattern")
+                .help("4 is the usual choice, 10 where the body deforms much")),
+        },
+    }
+}
+
+fn checked_region(raw: &Spanned<RawRegion>, mesh: &Mesh) -> Result<Region, Fault> {
+    let region = region(raw)?;
+    if (0..mesh.tets.len()).any(|e| touches(mesh, e, &region)) {
+        return Ok(region);
+    }
+    let [low, high] = mesh.bounds();
+    Err(Fault::new("this body would have no particles")
+        .at(raw.span(), "no element of the mesh lies in this region")
+        .help(format!("the mesh reaches from {low} m to {high} m")))
+}
+
+/// Whether the element's centroid or one of its corners lies in the region.
+pub(super) fn touches(mesh: &Mesh, element: usize, region: &Region) -> bool {
+    region.contains(mesh.centroid(element))
+        || mesh.corners(element).iter().any(|&x| region.contains(x))
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Box,
+    Sphere,
+    Cylinder,
+    HalfSpace,
+}
+
+fn region(raw: &Spanned<RawRegion>) -> Result<Region, Fault> {
+    let place = raw.span();
+    let raw = raw.get_ref();
+    let kind = match &raw.kind {
+        None => Kind::Box,
+        Some(kind) => choose(
+            placed(kind),
+            "kind of region",
+            &[
+                ("box", Kind::Box),
+                ("sphere", Kind::Sphere),
+                ("cylinder", Kind::Cylinder),
+                ("half-space", Kind::HalfSpace),
+            ],
+            &[],
+        )?,
+    };
+    refuse_others(kind, raw)?;
+    let at = |key: &str, value: &Option<RawVector>| -> Result<Vec3, Fault> {
+        let value = required(
+            (place.clone(), "this region"),
+            key,
+            value,
+            "[\"0 m\", \"0 m\", \"1 m\"]",
+        )?;
+        vector(key, value, Dimension::Length)
+    };
+    let radius = || -> Result<f64, Fault> {
+        let owner = (place.clone(), "this region");
+        let radius = required(owner, "radius", &raw.radius, "\"1 m\"")?;
+        positive("radius", radius, Dimension::Length)
+    };
+    let region = match kind {
+        Kind::Box => Region::Box {
+            min: at("min", &raw.min)?,
+            max: at("max", &raw.max)?,
+        },
+        Kind::Sphere => Region::Sphere {
+            centre: at("centre", &raw.centre)?,
+            radius: radius()?,
+        },
+        Kind::Cylinder => Region::Cylinder {
+            start: at("start", &raw.start)?,
+            end: at("end", &raw.end)?,
+            radius: radius()?,
+        },
+        Kind::HalfSpace => {
+            let owner = (place.clone(), "a half-space");
+            let normal = required(owner, "normal", &raw.normal, "[0, 0, 1]")?;
+            Region::HalfSpace {
+                point: at("point", &raw.point)?,
+                normal: vector("normal", normal, Dimension::Number)?,
+            }
+        }
+    };
+    not_degenerate(region, place)
+}
+
+fn refuse_others(kind: Kind, raw: &RawRegion) -> Result<(), Fault> {
+    let keys = [
+        ("min", span(&raw.min), &[Kind::Box][..]),
+        ("max", span(&raw.max), &[Kind::Box]),
+        ("centre", span(&raw.centre), &[Kind::Sphere]),
+        ("radius", span(&raw.radius), &[Kind::Sphere, Kind::Cylinder]),
+        ("start", span(&raw.start), &[Kind::Cylinder]),
+        ("end", span(&raw.end), &[Kind::Cylinder]),
+        ("point", span(&raw.point), &[Kind::HalfSpace]),
+        ("normal", span(&raw.normal), &[Kind::HalfSpace]),
+    ];
+    let others = keys.into_iter().filter(|k| !k.2.contains(&kind));
+    let others: Vec<_> = others.map(|(key, span, _)| (key, span)).collect();
+    match &raw.kind {
+        Some(kind) => foreign(kind, &others),
+        None => match others.into_iter().find_map(|(key, span)| Some((key, span?))) {
+            None => Ok(()),
+            Some((key, span)) => Err(Fault::new("this region does not say its kind")
+                .at(span, format!("`{key}` does not belong to a box"))
+                .help("add kind = \"sphere\", \"cylinder\" or \"half-space\"; without it a region is a box")),
+        },
+    }
+}
+
+fn not_degenerate(region: Region, place: std::ops::Range<usize>) -> Result<Region, Fault> {
+    let wrong = match region {
+        Region::Box { min, max } if !min.cmplt(max).all() => "`min` must be less than `max`",
+        Region::Cylinder { start, end, .. } if start == end => "`start` and `end` must differ",
+        Region::HalfSpace { normal, .. } if normal == Vec3::ZERO => "`normal` must not be zero",
+        _ => return Ok(region),
+    };
+    Err(Fault::new(wrong).at(place, "this region is empty"))
+}

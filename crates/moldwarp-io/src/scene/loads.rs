@@ -1,0 +1,123 @@
+//! Loads on surfaces, each carried by one body.
+
+use super::amount::Spanned;
+use super::bodies::touches;
+use super::error::Fault;
+use super::functions::function;
+use super::quantity::Dimension;
+use super::raw::{RawLoad, Text};
+use super::surfaces::{joined, surfaces, unique};
+use super::values::{amount, exactly_one, find, placed, span, vector};
+use moldwarp::Mesh;
+use moldwarp::plan::{Body, Load, LoadKind, Place};
+use std::collections::HashSet;
+
+pub(super) fn loads(
+    raw: &[Spanned<RawLoad>],
+    mesh: &Mesh,
+    bodies: &[Body],
+) -> Result<Vec<Load>, Fault> {
+    let mut loads: Vec<Load> = Vec::new();
+    for item in raw {
+        let raw = item.get_ref();
+        let surfaces = surfaces(&raw.surface, mesh)?;
+        let body = body(item, bodies)?;
+        bears(raw, &surfaces, &bodies[body], mesh)?;
+        let name = match &raw.name {
+            Some(name) if loads.iter().any(|l| &l.name == name.get_ref()) => {
+                return Err(
+                    Fault::new(format!("two loads are called `{}`", name.get_ref()))
+                        .at(name.span(), "the second of this name")
+                        .help("give each its own name"),
+                );
+            }
+            Some(name) => name.get_ref().clone(),
+            None => unique(
+                joined(&surfaces, mesh),
+                loads.iter().map(|l| l.name.as_str()),
+            ),
+        };
+        loads.push(Load {
+            name,
+            surfaces,
+            body,
+            kind: kind(item)?,
+            function: function(raw.function.as_ref())?,
+        });
+    }
+    Ok(loads)
+}
+
+/// The only body need not be named.
+fn body(item: &Spanned<RawLoad>, bodies: &[Body]) -> Result<usize, Fault> {
+    let names = bodies.iter().map(|b| b.name.as_str());
+    match &item.get_ref().body {
+        Some(name) => find(placed(name), "body", "bodies", names),
+        None if bodies.len() == 1 => Ok(0),
+        None => Err(Fault::new("a load needs `body`, since there are several")
+            .at(item.get_ref().surface.span(), "which body bears this load?")
+            .help(format!("bodies: {}", super::suggest::list(names)))),
+    }
+}
+
+fn kind(item: &Spanned<RawLoad>) -> Result<LoadKind, Fault> {
+    let raw = item.get_ref();
+    exactly_one(
+        (raw.surface.span(), "a load"),
+        &[
+            ("traction", span(&raw.traction)),
+            ("pressure", span(&raw.pressure)),
+            ("force", span(&raw.force)),
+        ],
+    )?;
+    match (&raw.traction, &raw.pressure, &raw.force) {
+        (Some(t), _, _) => Ok(LoadKind::Traction(vector(
+            "traction",
+            t,
+            Dimension::Stress,
+        )?)),
+        (_, Some(p), _) => Ok(LoadKind::Pressure(amount(
+            "pressure",
+            p,
+            Dimension::Stress,
+        )?)),
+        (_, _, Some(f)) => Ok(LoadKind::Force(vector("force", f, Dimension::Force)?)),
+        _ => Err(Fault::new("a load needs a size")),
+    }
+}
+
+/// Each triangle must have an element of the body beside it, else its share of the load would
+/// act on nothing.
+fn bears(raw: &RawLoad, surfaces: &[usize], body: &Body, mesh: &Mesh) -> Result<(), Fault> {
+    let group: Option<HashSet<u32>> = match body.place {
+        Place::VolumeGroup(g) => Some(mesh.volume_groups[g].elements.iter().copied().collect()),
+        Place::Region(_) => None,
+    };
+    let holds = |element: u32| match (&group, &body.place) {
+        (Some(group), _) => group.contains(&element),
+        (None, Place::Region(region)) => touches(mesh, element as usize, region),
+        (None, Place::VolumeGroup(_)) => false,
+    };
+    let faces = || surfaces.iter().flat_map(|&s| &mesh.surfaces[s].faces);
+    let bare = faces()
+        .filter(|&&face| {
+            let across = mesh.across(face).map(|f| f.element);
+            !holds(face.element) && !across.is_some_and(holds)
+        })
+        .count();
+    if bare == 0 {
+        return Ok(());
+    }
+    let total = faces().count();
+    let surface = raw.surface.span();
+    let mut fault = Fault::new(format!(
+        "{bare} of {total} triangles of this load do not touch body `{}`",
+        body.name
+    ))
+    .at(surface, "nothing would bear the load there")
+    .help("load a surface of this body, or name the body that this surface belongs to");
+    if let Some(name) = raw.body.as_ref().map(Text::span) {
+        fault = fault.at(name, "this body");
+    }
+    Err(fault)
+}

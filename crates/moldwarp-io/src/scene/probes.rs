@@ -1,0 +1,128 @@
+//! Probes: what is recorded where.
+
+use super::amount::{Named, each};
+use super::error::Fault;
+use super::quantity::Dimension;
+use super::raw::{RawProbe, Text};
+use super::surfaces::surface;
+use super::unsupported;
+use super::values::{choose, exactly_one, find, placed, span, vector};
+use moldwarp::Mesh;
+use moldwarp::plan::{Body, Boundary, Probe, Quantity, Target};
+
+/// Column groups of the history that are not probes.
+const RESERVED: [&str; 2] = ["energy", "contact"];
+
+pub(super) fn probes(
+    raw: &Named<RawProbe>,
+    mesh: &Mesh,
+    bodies: &[Body],
+    boundaries: &[Boundary],
+    notes: &mut Vec<String>,
+) -> Result<Vec<Probe>, Fault> {
+    let mut probes = Vec::new();
+    for (name, raw) in &raw.0 {
+        check_name(name)?;
+        let target = target(name, raw, mesh, bodies)?;
+        if let Target::Point(x) = target
+            && mesh.find(x).is_none()
+        {
+            notes.push(format!(
+                "the point of probe `{}` lies outside the mesh; it follows the nearest particle",
+                name.get_ref()
+            ));
+        }
+        let quantities = quantities(raw, target, boundaries)?;
+        probes.push(Probe {
+            name: name.get_ref().clone(),
+            target,
+            quantities,
+        });
+    }
+    Ok(probes)
+}
+
+/// The name becomes the first part of a column's name in a CSV file.
+fn check_name(name: &Text) -> Result<(), Fault> {
+    let text = name.get_ref();
+    if text.is_empty() || text.contains(['.', ',', '"', '\n', '\r']) {
+        return Err(Fault::new("a probe's name becomes part of a column's name")
+            .at(
+                name.span(),
+                "is empty, or has a dot, comma, quote or line break",
+            )
+            .help("use letters, digits, `-` and `_`"));
+    }
+    if RESERVED.contains(&text.as_str()) {
+        return Err(Fault::new(format!("a probe cannot be called `{text}`"))
+            .at(name.span(), "the history has columns of this name already")
+            .help("choose another name"));
+    }
+    Ok(())
+}
+
+fn target(name: &Text, raw: &RawProbe, mesh: &Mesh, bodies: &[Body]) -> Result<Target, Fault> {
+    exactly_one(
+        (name.span(), "a probe"),
+        &[
+            ("surface", span(&raw.surface)),
+            ("point", span(&raw.point)),
+            ("body", span(&raw.body)),
+        ],
+    )?;
+    match (&raw.surface, &raw.point, &raw.body) {
+        (Some(name), _, _) => Ok(Target::Surface(surface(placed(name), mesh)?)),
+        (_, _, Some(body)) => {
+            let names = bodies.iter().map(|b| b.name.as_str());
+            Ok(Target::Body(find(placed(body), "body", "bodies", names)?))
+        }
+        (_, Some(point), _) => {
+            let x = vector("point", point, Dimension::Length)?;
+            let [low, high] = mesh.bounds();
+            if x.cmpge(low).all() && x.cmple(high).all() {
+                return Ok(Target::Point(x));
+            }
+            Err(Fault::new("this point lies outside the mesh")
+                .at(point.span(), "there is no particle near")
+                .help(format!("the mesh reaches from {low} m to {high} m")))
+        }
+        _ => Err(Fault::new("a probe needs a place")),
+    }
+}
+
+fn quantities(
+    raw: &RawProbe,
+    target: Target,
+    boundaries: &[Boundary],
+) -> Result<Vec<Quantity>, Fault> {
+    let held = matches!(target, Target::Surface(s)
+        if boundaries.iter().any(|b| b.surfaces.contains(&s)));
+    let mut chosen = Vec::new();
+    for (span, word) in each(&raw.quantities) {
+        let quantity = choose(
+            (span.clone(), word),
+            "quantity",
+            &Quantity::ALL,
+            &unsupported::QUANTITIES,
+        )?;
+        if quantity == Quantity::Reaction && !held {
+            return Err(
+                Fault::new("`reaction` is the force on a surface with a boundary")
+                    .at(span, "there is no boundary here")
+                    .help(
+                        "put the probe on a surface that [[boundaries]] name, or remove `reaction`",
+                    ),
+            );
+        }
+        if chosen.contains(&quantity) {
+            return Err(Fault::new(format!("`{word}` is listed twice")).at(span, "again here"));
+        }
+        chosen.push(quantity);
+    }
+    if chosen.is_empty() {
+        return Err(Fault::new("a probe records at least one quantity")
+            .at(raw.quantities.span(), "an empty list")
+            .help("for example quantities = [\"displacement\"]"));
+    }
+    Ok(chosen)
+}

@@ -1,0 +1,123 @@
+//! From TOML to the raw scene, and what TOML and serde say when that fails, in our words.
+
+use super::error::Fault;
+use super::raw::RawScene;
+use super::{suggest, unsupported};
+use serde::Deserialize;
+use toml::de::{DeTable, DeValue};
+
+const VERSION: &str = "1";
+
+/// Reads the scene's shape. The version comes first: the keys of another one would only confuse.
+pub(super) fn parse(text: &str) -> Result<RawScene, Fault> {
+    let table = table(text)?;
+    check_version(&table)?;
+    let deserializer = toml::Deserializer::parse(text).map_err(|e| not_toml(&e))?;
+    RawScene::deserialize(deserializer).map_err(|e| explain(&e))
+}
+
+/// The text as TOML, with places.
+pub(super) fn table(text: &str) -> Result<DeTable<'_>, Fault> {
+    match DeTable::parse(text) {
+        Ok(table) => Ok(table.into_inner()),
+        Err(e) => Err(not_toml(&e)),
+    }
+}
+
+fn not_toml(error: &toml::de::Error) -> Fault {
+    let fault = Fault::new("the scene is not valid TOML")
+        .help("TOML is `key = value` under `[table]` headers; texts stand in double quotes");
+    match error.span() {
+        Some(span) => fault.at(span, error.message().to_owned()),
+        None => fault,
+    }
+}
+
+fn check_version(table: &DeTable) -> Result<(), Fault> {
+    let Some(version) = table.get("version") else {
+        return Err(Fault::new("the scene does not say its version")
+            .at(0..0, "`version` is missing")
+            .help("begin the file with `version = 1`"));
+    };
+    match version.get_ref() {
+        DeValue::Integer(n) if n.as_str() == VERSION => Ok(()),
+        _ => Err(
+            Fault::new("this version of the scene format cannot be read")
+                .at(version.span(), "not a version known here")
+                .help("this program reads `version = 1`"),
+        ),
+    }
+}
+
+/// Serde's messages are the only way it tells which key it misses or does not know.
+fn explain(error: &toml::de::Error) -> Fault {
+    let message = error.message();
+    let mut names = message.split('`').skip(1).step_by(2);
+    let fault = if message.starts_with("unknown field") {
+        let key = names.next().unwrap_or_default();
+        return unknown_key(key, &names.collect::<Vec<_>>(), error);
+    } else if message.starts_with("missing field") {
+        let key = names.next().unwrap_or_default();
+        let fault = Fault::new(format!("`{key}` is missing"));
+        (fault.help(example(key)), format!("needs `{key}`"))
+    } else if let Some((found, expected)) = expectation(message) {
+        let fault = Fault::new(format!("expected {expected}, found {found}"));
+        (fault, "of the wrong kind".to_owned())
+    } else {
+        (Fault::new(message), "here".to_owned())
+    };
+    match (fault, error.span()) {
+        ((fault, label), Some(span)) => fault.at(span, label),
+        ((fault, _), None) => fault,
+    }
+}
+
+fn expectation(message: &str) -> Option<(&str, &str)> {
+    message
+        .strip_prefix("invalid type: ")?
+        .split_once(", expected ")
+}
+
+fn unknown_key(key: &str, expected: &[&str], error: &toml::de::Error) -> Fault {
+    let span = error.span().unwrap_or(0..0);
+    if unsupported::key(key, expected) {
+        return Fault::new(format!("`{key}` is not supported yet by this version"))
+            .at(span, "not supported yet")
+            .help(format!(
+                "remove it; keys that belong here: {}",
+                suggest::list(expected.iter().copied())
+            ));
+    }
+    let names = expected.iter().copied();
+    let mut fault = Fault::new(format!("unknown key `{key}`"))
+        .at(span, "no such key here")
+        .help(suggest::help(key, "keys that belong here", names.clone()));
+    fault.meant = suggest::nearest(key, names).map(str::to_owned);
+    fault
+}
+
+/// A line that makes a missing key right.
+fn example(key: &str) -> String {
+    let line = match key {
+        "gravity" => "gravity = [\"0 m/s2\", \"0 m/s2\", \"-9.81 m/s2\"]",
+        "mesh" => "[mesh]\nfile = \"model.msh\"",
+        "materials" => {
+            "[materials.soil]\nmodel = \"linear-elastic\"\nyoung_modulus = \"100 kPa\"\n\
+             poisson_ratio = 0.3\nunit_weight = \"18 kN/m3\""
+        }
+        "bodies" => "[bodies.layer]\nvolume = \"soil\"\nmaterial = \"soil\"",
+        "model" => "model = \"linear-elastic\"",
+        "material" => "material = \"soil\", the name of a [materials.…] table",
+        "surface" => "surface = \"bottom\", or a list of surfaces",
+        "kind" => "kind = \"roller\" of a boundary, kind = \"ramp\" of a function",
+        "quantities" => "quantities = [\"displacement\", \"stress\"]",
+        "name" => "name = \"loading\"",
+        "size" => "size = [\"1 m\", \"1 m\", \"2 m\"]",
+        "cells" => "cells = [4, 4, 8]",
+        "column" => "column = \"bottom.displacement.z\"",
+        "file" => "file = \"exact.csv\"",
+        "fraction" | "period" => "viscosity = { fraction = 0.05, period = \"0.5 s\" }",
+        _ => return format!("add `{key} = …`"),
+    };
+    format!("for example:\n{line}")
+}

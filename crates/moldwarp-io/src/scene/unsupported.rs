@@ -1,0 +1,33 @@
+//! What the scene format has a name for but this version cannot compute.
+
+/// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
+const KEYS: [(&str, &str); 15] = [
+    ("contacts", "gravity"),
+    ("symmetry", "gravity"),
+    ("cylinder", "box"),
+    ("cohesion", "young_modulus"),
+    ("friction_angle", "young_modulus"),
+    ("dilation_angle", "young_modulus"),
+    ("tension_cutoff", "young_modulus"),
+    ("particle_spacing", "particles_per_element"),
+    ("until", "duration"),
+    ("on", "duration"),
+    ("off", "duration"),
+    ("add", "duration"),
+    ("remove", "duration"),
+    ("reset", "duration"),
+    ("checkpoint_interval", "frames"),
+];
+
+/// Materials.
+pub(super) const MODELS: [&str; 1] = ["mohr-coulomb"];
+/// Boundaries.
+pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];
+/// What probes record.
+pub(super) const QUANTITIES: [&str; 1] = ["penetration"];
+
+/// Whether `key` is one of them where `siblings` are the keys that are known.
+pub(super) fn key(key: &str, siblings: &[&str]) -> bool {
+    KEYS.iter()
+        .any(|&(name, beside)| name == key && siblings.contains(&beside))
+}

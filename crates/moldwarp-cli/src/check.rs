@@ -3,7 +3,7 @@
 use crate::args::CheckArgs;
 use crate::exit::Exit;
 use crate::run::load;
-use crate::{Failure, text};
+use crate::{Failure, say, text};
 use moldwarp_io::check::{Forecast, check as forecast};
 use std::time::Duration;
 use text::number;
@@ -11,7 +11,7 @@ use text::number;
 pub fn check(args: &CheckArgs) -> Result<Exit, Failure> {
     let (scene, threads) = load(&args.scene)?;
     let forecast = forecast(scene)?;
-    print!("{}", plan(&forecast, threads));
+    say(&plan(&forecast, threads));
     match forecast.stopped {
         None => Ok(Exit::Done),
         Some(stop) => Err(Failure::new(
@@ -69,7 +69,7 @@ fn plan(f: &Forecast, threads: usize) -> String {
 
 fn steps(f: &Forecast) -> String {
     format!(
-        "time step   {} s (stable: {} s); {} steps to t = {} s",
+        "time step   {} s (stable: {} s); about {} steps to t = {} s",
         number(f.time_step),
         number(f.stable_time_step),
         f.steps,
@@ -83,8 +83,9 @@ fn effort(f: &Forecast, threads: usize) -> String {
         .memory
         .map(|m| format!(", {} of memory", text::bytes(m as f64)));
     format!(
-        "effort      about {} with {threads} threads ({} particle steps/s in a few trial steps){}",
+        "effort      about {} with {} ({} particle steps/s in a few trial steps){}",
         text::duration(time),
+        text::threads(threads),
         text::rate(f.rate),
         memory.unwrap_or_default()
     )

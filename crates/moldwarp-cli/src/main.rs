@@ -11,6 +11,7 @@ mod text;
 use args::{Args, Command};
 use clap::Parser;
 use exit::Exit;
+use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -26,6 +27,12 @@ fn main() -> ExitCode {
             failure.exit.into()
         }
     }
+}
+
+/// Writes to standard output. Someone who has stopped reading, as `head` does, is no failure:
+/// what was computed stands in files.
+fn say(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
 /// Why a command ended early: what is shown, and the exit code.

@@ -1,10 +1,11 @@
 //! `moldwarp new`: the examples, which are in the binary.
 
-use crate::Failure;
 use crate::args::NewArgs;
 use crate::exit::Exit;
+use crate::{Failure, say};
 use moldwarp_io::output::FileError;
 use std::fs;
+use std::path::Path;
 
 struct Case {
     name: &'static str,
@@ -38,18 +39,7 @@ pub fn new(args: &NewArgs) -> Result<Exit, Failure> {
             args.case
         )));
     };
-    let taken = |source| FileError {
-        action: "read",
-        path: dir.clone(),
-        source,
-    };
-    if dir.exists()
-        && fs::read_dir(dir)
-            .map_err(taken)
-            .map_err(report)?
-            .next()
-            .is_some()
-    {
+    if dir.exists() && !is_empty(dir).map_err(report)? {
         return Err(Failure::input(miette::miette!(
             help = "name a folder that does not exist yet",
             "{} is not empty",
@@ -65,8 +55,13 @@ pub fn new(args: &NewArgs) -> Result<Exit, Failure> {
             .map_err(FileError::at("write", &path))
             .map_err(|e| Failure::new(Exit::Files, miette::miette!("{e}")))?;
     }
-    println!("next: moldwarp run {}", dir.display());
+    say(&format!("next: moldwarp run {}\n", dir.display()));
     Ok(Exit::Done)
+}
+
+fn is_empty(dir: &Path) -> Result<bool, FileError> {
+    let mut entries = fs::read_dir(dir).map_err(FileError::at("read", dir))?;
+    Ok(entries.next().is_none())
 }
 
 /// Nothing has been written yet: the argument is wrong.

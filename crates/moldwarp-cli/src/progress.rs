@@ -39,10 +39,10 @@ impl Observer for Display {
             eprintln!("note: {note}");
         }
         eprintln!(
-            "{} particles in {} elements, {} threads, into {}",
+            "{} particles in {} elements, {}, into {}",
             sim.particles().len(),
             sim.mesh().tets.len(),
-            self.threads,
+            text::threads(self.threads),
             folder.path().display()
         );
         if std::io::stderr().is_terminal() {

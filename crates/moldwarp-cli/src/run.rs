@@ -3,7 +3,7 @@
 use crate::args::{RunArgs, SceneArgs};
 use crate::exit::Exit;
 use crate::progress::Display;
-use crate::{Failure, text};
+use crate::{Failure, say, text};
 use moldwarp::measure::Energies;
 use moldwarp_io::output::summary::Compared;
 use moldwarp_io::run::{Outcome, RunOptions, run as compute};
@@ -18,7 +18,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
         threads,
     };
     let outcome = compute(scene, &options, &mut Display::new(threads))?;
-    print!("{}", conclusion(&outcome));
+    say(&conclusion(&outcome));
     match outcome.stopped {
         None => Ok(Exit::Done),
         Some(stop) => Err(Failure::new(

@@ -42,6 +42,14 @@ pub fn number(x: f64) -> String {
     }
 }
 
+/// So many threads.
+pub fn threads(count: usize) -> String {
+    match count {
+        1 => "1 thread".to_owned(),
+        n => format!("{n} threads"),
+    }
+}
+
 /// Thousands, millions … of things a second.
 pub fn rate(x: f64) -> String {
     match x {

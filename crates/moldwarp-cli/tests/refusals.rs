@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Bench, COLUMN};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 #[test]
@@ -57,7 +58,11 @@ fn an_interrupted_run_can_be_opened_and_is_not_overwritten() {
         .replace("frames = 4", "frame_interval = \"1 ms\"")
         .replace("0.2 s", "1 h");
     let bench = Bench::with(&long);
-    let mut run = bench.command(&["run", "column"]).spawn().unwrap();
+    let mut run = bench
+        .command(&["run", "column"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
     let start = Instant::now();
     while !bench.path("out/column/frames/particles_00003.vtu").exists() {
         assert!(

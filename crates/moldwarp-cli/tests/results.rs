@@ -142,7 +142,7 @@ fn check_says_the_plan_and_writes_nothing() {
         "mesh        30 elements, 24 nodes",
         "body        `layer` of `soil`: 120 particles, 0.005 m3, 9.174 kg\n",
         " steps to t = 0.2 s\n",
-        "with 1 threads",
+        "with 1 thread (",
         "in 5 frames",
         "history     time stage stage_time step dt bottom.displacement.x ",
     ] {

@@ -21,11 +21,11 @@ impl Difference {
 /// Why a history and a reference cannot be compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CompareError {
-    #[error("the reference has no rows")]
+    #[error("it has no rows")]
     Empty,
-    #[error("the reference's times go back at {time} s")]
+    #[error("its times go back at {time} s")]
     NotOrdered { time: f64 },
-    #[error("the reference is zero throughout, so that no difference can be related to its peak")]
+    #[error("it is zero throughout, so that no difference can be related to its peak")]
     Flat,
     #[error("the history (to {end} s) and the reference (from {begin} s) share no time")]
     NoOverlap { begin: f64, end: f64 },

@@ -18,12 +18,13 @@ use std::path::{Path, PathBuf};
 
 /// A file that could not be read or written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {}: {source}", .path.display())]
+#[error("cannot {action} {}: {reason}", .path.display())]
 pub struct FileError {
     /// `read`, `write`, `create` …
     pub action: &'static str,
     pub path: PathBuf,
-    pub source: io::Error,
+    /// The system's. Not the error's source, or it would be shown twice.
+    pub reason: io::Error,
 }
 
 impl FileError {
@@ -32,10 +33,10 @@ impl FileError {
         action: &'static str,
         path: &'a Path,
     ) -> impl FnOnce(io::Error) -> FileError + 'a {
-        move |source| FileError {
+        move |reason| FileError {
             action,
             path: path.to_owned(),
-            source,
+            reason,
         }
     }
 }

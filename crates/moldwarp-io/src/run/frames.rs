@@ -82,7 +82,8 @@ fn write_mesh(sim: &Simulation, path: &std::path::Path) -> Result<(), FileError>
 
 /// p = −tr σ / 3, Pa.
 fn mean_pressure(s: &[f64; 6]) -> f64 {
-    -(s[0] + s[1] + s[2]) / 3.0
+    // Not with a leading minus: no stress is to be no pressure, not -0.
+    (0.0 - s[0] - s[1] - s[2]) / 3.0
 }
 
 /// q = √(3/2 s : s) with the deviator s of σ, Pa: |σ₁ − σ₃| in triaxial compression.

@@ -119,7 +119,7 @@ pub enum RunError {
     },
     #[error(transparent)]
     Csv(#[from] CsvError),
-    #[error("{0}")]
+    #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy()))]
     Folder(#[from] FolderError),
     /// During the run.

@@ -223,9 +223,19 @@ pub enum Integration {
     Particle,
 }
 
+/// What particles receive of the accelerations of the lumped mass matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MassMatrix {
+    /// Accelerations corrected in filled elements for what lumping does to short waves.
+    Corrected,
+    /// Just a_i = F_i / m_i (Jassim et al. Eq. 6–8).
+    Lumped,
+}
+
 #[derive(Clone, Debug)]
 pub struct Numerics {
     pub integration: Integration,
+    pub mass: MassMatrix,
     /// Nodal mixed discretisation of the volumetric strain.
     pub smoothing: bool,
     /// Share of the critical step that is taken.
@@ -246,6 +256,7 @@ impl Default for Numerics {
     fn default() -> Numerics {
         Numerics {
             integration: Integration::Mixed,
+            mass: MassMatrix::Corrected,
             smoothing: true,
             courant: 0.5,
             pic_rate: 0.0,

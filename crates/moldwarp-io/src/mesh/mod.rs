@@ -1,11 +1,25 @@
-//! Mesh files.
+//! Mesh files: Gmsh's MSH 2.2 and 4.1, ASCII and binary.
+
+mod error;
+mod explain;
+mod gmsh;
+mod missing;
+
+pub use error::{GmshProblem, MeshFileError, Place};
+pub use explain::explain_mesh_error;
 
 use moldwarp::mesh::RawMesh;
+use std::fs;
+use std::io;
 use std::path::Path;
 
 /// A mesh as read, with the numbers its file gave to nodes and elements.
+///
+/// [`Mesh::new`](moldwarp::mesh::Mesh::new) takes `raw`; should it refuse,
+/// [`explain_mesh_error`] says why in the file's own numbers.
 #[derive(Debug)]
 pub struct MeshFile {
+    /// Coordinates are the file's own, in whatever unit it was drawn.
     pub raw: RawMesh,
     /// The file's tag of each node of `raw`.
     pub node_tags: Vec<u64>,
@@ -15,12 +29,41 @@ pub struct MeshFile {
     pub notes: Vec<String>,
 }
 
-/// Why a mesh file could not be read.
-#[derive(Debug, thiserror::Error)]
-#[error("not read yet")]
-pub struct MeshFileError;
-
 /// Reads a Gmsh file.
-pub fn read_gmsh(_path: &Path) -> Result<MeshFile, MeshFileError> {
-    Err(MeshFileError)
+///
+/// Volume groups are the physical groups of 4-node tetrahedra, surface groups those of 3-node
+/// triangles, in the order of their tags; a group without a name is called by its tag. Points and
+/// lines are left out. Nodes and elements keep the file's order and orientation.
+///
+/// # Errors
+///
+/// Whatever keeps the file from being a mesh of tetrahedra, with the line (ASCII) or byte (binary)
+/// and what to do about it.
+pub fn read_gmsh(path: &Path) -> Result<MeshFile, MeshFileError> {
+    let bytes = read_bytes(path).map_err(|source| match source.kind() {
+        io::ErrorKind::NotFound => missing::error(path),
+        _ => MeshFileError::Unreadable {
+            file: path.to_owned(),
+            source,
+        },
+    })?;
+    parse_gmsh(path, &bytes)
+}
+
+/// Reads a Gmsh file from memory; `file` is its name in messages.
+///
+/// # Errors
+///
+/// As [`read_gmsh`].
+pub fn parse_gmsh(file: &Path, bytes: &[u8]) -> Result<MeshFile, MeshFileError> {
+    gmsh::parse(file, bytes)
+}
+
+/// The whole of a regular file; a pipe or a device may have no end.
+fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    if fs::metadata(path)?.is_file() {
+        fs::read(path)
+    } else {
+        Err(io::Error::other("it is not a regular file"))
+    }
 }

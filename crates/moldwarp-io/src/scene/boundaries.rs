@@ -4,7 +4,7 @@ use super::amount::{Amount, OneOrMany, Spanned, each};
 use super::error::Fault;
 use super::functions::function;
 use super::quantity::Dimension;
-use super::raw::{RawBoundary, Texts};
+use super::raw::{RawBoundary, Text, Texts};
 use super::surfaces::{joined, surfaces, unique};
 use super::unsupported;
 use super::values::{amount, amount_at, choose, foreign, placed, required, span, three};
@@ -23,43 +23,48 @@ pub(super) fn boundaries(
     raw: &[Spanned<RawBoundary>],
     mesh: &Mesh,
 ) -> Result<Vec<Boundary>, Fault> {
+    check_names(raw)?;
     let mut done: Vec<Boundary> = Vec::new();
-    for (i, item) in raw.iter().enumerate() {
-        let item_raw = item.get_ref();
-        let surfaces = surfaces(&item_raw.surface, mesh)?;
-        let kind = kind(item)?;
-        // Names the user gave come first, wherever they stand.
-        let given = raw.iter().filter_map(|b| b.get_ref().name.as_ref());
-        let name = match &item_raw.name {
-            Some(name) => {
-                let earlier = raw[..i].iter().filter_map(|b| b.get_ref().name.as_ref());
-                if let Some(first) = earlier.into_iter().find(|n| n.get_ref() == name.get_ref()) {
-                    return Err(Fault::new(format!(
-                        "two boundaries are called `{}`",
-                        name.get_ref()
-                    ))
-                    .at(first.span(), "first")
-                    .at(name.span(), "second")
-                    .help("give each its own name, or one boundary a list of surfaces"));
-                }
-                name.get_ref().clone()
-            }
-            None => unique(
-                joined(&surfaces, mesh),
-                given
+    for item in raw {
+        let surfaces = surfaces(&item.get_ref().surface, mesh)?;
+        let name = match &item.get_ref().name {
+            Some(name) => name.get_ref().clone(),
+            None => {
+                let earlier = done.iter().map(|b| b.name.as_str());
+                let taken = given_names(raw)
                     .map(|n| n.get_ref().as_str())
-                    .chain(done.iter().map(|b| b.name.as_str())),
-            ),
+                    .chain(earlier);
+                unique(joined(&surfaces, mesh), taken)
+            }
         };
         let boundary = Boundary {
             name,
             surfaces,
-            kind,
+            kind: kind(item)?,
         };
         agrees_with(&boundary, &done, raw, mesh)?;
         done.push(boundary);
     }
     Ok(done)
+}
+
+fn given_names(raw: &[Spanned<RawBoundary>]) -> impl Iterator<Item = &Text> + Clone {
+    raw.iter().filter_map(|b| b.get_ref().name.as_ref())
+}
+
+fn check_names(raw: &[Spanned<RawBoundary>]) -> Result<(), Fault> {
+    for (i, name) in given_names(raw).enumerate() {
+        let mut earlier = given_names(raw).take(i);
+        if let Some(first) = earlier.find(|n| n.get_ref() == name.get_ref()) {
+            return Err(
+                Fault::new(format!("two boundaries are called `{}`", name.get_ref()))
+                    .at(first.span(), "first")
+                    .at(name.span(), "second")
+                    .help("give each its own name, or one boundary a list of surfaces"),
+            );
+        }
+    }
+    Ok(())
 }
 
 fn kind(item: &Spanned<RawBoundary>) -> Result<BoundaryKind, Fault> {

@@ -10,7 +10,6 @@ use super::surfaces::{joined, surfaces, unique};
 use super::values::{amount, exactly_one, find, placed, span, vector};
 use moldwarp::Mesh;
 use moldwarp::plan::{Body, Load, LoadKind, Place};
-use std::collections::HashSet;
 
 pub(super) fn loads(
     raw: &[Spanned<RawLoad>],
@@ -89,15 +88,8 @@ fn kind(item: &Spanned<RawLoad>) -> Result<LoadKind, Fault> {
 /// Each triangle must have an element of the body beside it, else its share of the load would
 /// act on nothing.
 fn bears(raw: &RawLoad, surfaces: &[usize], body: &Body, mesh: &Mesh) -> Result<(), Fault> {
-    let group: Option<HashSet<u32>> = match body.place {
-        Place::VolumeGroup(g) => Some(mesh.volume_groups[g].elements.iter().copied().collect()),
-        Place::Region(_) => None,
-    };
-    let holds = |element: u32| match (&group, &body.place) {
-        (Some(group), _) => group.contains(&element),
-        (None, Place::Region(region)) => touches(mesh, element as usize, region),
-        (None, Place::VolumeGroup(_)) => false,
-    };
+    let filled = filled(body, mesh);
+    let holds = |element: u32| filled[element as usize];
     let faces = || surfaces.iter().flat_map(|&s| &mesh.surfaces[s].faces);
     let bare = faces()
         .filter(|&&face| {
@@ -120,4 +112,20 @@ fn bears(raw: &RawLoad, surfaces: &[usize], body: &Body, mesh: &Mesh) -> Result<
         fault = fault.at(name, "this body");
     }
     Err(fault)
+}
+
+/// Which elements the body fills, at least in part.
+fn filled(body: &Body, mesh: &Mesh) -> Vec<bool> {
+    match &body.place {
+        Place::VolumeGroup(group) => {
+            let mut filled = vec![false; mesh.tets.len()];
+            for &e in &mesh.volume_groups[*group].elements {
+                filled[e as usize] = true;
+            }
+            filled
+        }
+        Place::Region(region) => (0..mesh.tets.len())
+            .map(|e| touches(mesh, e, region))
+            .collect(),
+    }
 }

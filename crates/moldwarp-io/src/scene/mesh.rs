@@ -157,3 +157,32 @@ fn in_file_numbers(error: MeshError, file: &MeshFile) -> MeshError {
         other @ (MeshError::Empty | MeshError::NoSuchNode { .. }) => other,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldwarp::mesh::RawMesh;
+
+    #[test]
+    fn a_damaged_element_has_its_number_in_the_file() {
+        let file = MeshFile {
+            raw: RawMesh::default(),
+            node_tags: vec![10, 20, 30],
+            element_tags: vec![100, 200],
+            notes: Vec::new(),
+        };
+        let error = MeshError::Flat {
+            element: 1,
+            volume: 0.0,
+            others: 0,
+        };
+        let message = in_file_numbers(error, &file).to_string();
+        assert!(message.starts_with("element 200 is flat"), "{message}");
+        let error = MeshError::FaceShared {
+            nodes: [0, 1, 2],
+            elements: vec![0, 1],
+        };
+        let message = in_file_numbers(error, &file).to_string();
+        assert!(message.contains("[10, 20, 30]") && message.contains("[100, 200]"));
+    }
+}

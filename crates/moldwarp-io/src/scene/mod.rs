@@ -1,6 +1,6 @@
 //! From scene.toml to a checked plan.
 //!
-//! Two steps: [`raw`] is what the user wrote, each value with its place in the text; the other
+//! Two steps: `raw` is what the user wrote, each value with its place in the text; the other
 //! files check one part of it each and turn it into the solver's [`Plan`] in SI units. After
 //! that nothing can be a slip of the user.
 
@@ -72,10 +72,13 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
         true => path.join("scene.toml"),
         false => path.to_owned(),
     };
-    let name = file.display().to_string();
+    let mut name = file.display().to_string();
     let original = std::fs::read_to_string(&file).map_err(|e| unreadable(&name, path, &e))?;
     let (text, overrides) =
         overrides::apply(&original, sets).map_err(|fault| fault.in_file(&name, &original))?;
+    if !overrides.is_empty() {
+        name += " with --set";
+    }
     let folder = match file.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),

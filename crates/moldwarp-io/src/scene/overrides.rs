@@ -110,7 +110,12 @@ fn no_such_path(entry: &str, path: &[String], depth: usize, node: &Node) -> Faul
         keys[depth] = name.to_owned();
         keys.join(".")
     };
-    match suggest::nearest(missing, names.iter().map(String::as_str)) {
+    let near = match missing.parse::<usize>() {
+        // One number is as near as another.
+        Ok(_) => None,
+        Err(_) => suggest::nearest(missing, names.iter().map(String::as_str)),
+    };
+    match near {
         Some(near) => fault.help(format!("did you mean `{}`?", join(near))),
         None if names.is_empty() => fault.help(format!("`{there}` is empty")),
         None if there.is_empty() => {

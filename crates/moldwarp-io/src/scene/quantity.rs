@@ -142,6 +142,12 @@ pub(super) fn parse(text: &str, expected: Dimension) -> Result<f64, Unfit> {
 }
 
 fn unknown_unit(part: &str, expected: Dimension) -> Unfit {
+    if part.is_empty() {
+        return Unfit {
+            message: "a sign has no unit behind it".to_owned(),
+            help: expected.example(),
+        };
+    }
     let letters = part.trim_end_matches(|c: char| !c.is_alphabetic());
     let help = match suggest::nearest(letters, units::names()) {
         Some(near) if !letters.is_empty() => format!("did you mean `{near}`? "),
@@ -262,7 +268,7 @@ mod tests {
             ("1e kPa", "`e kPa` is not a unit"),
             ("1e400 kPa", "\"1e400 kPa\" is too large"),
             ("inf kPa", "expected a stress, found the text \"inf kPa\""),
-            ("2 kPa/", "`` is not a unit"),
+            ("2 kPa/", "a sign has no unit behind it"),
         ] {
             assert_eq!(parse(text, Stress).unwrap_err().message, message);
         }

@@ -58,3 +58,31 @@ pub(super) fn unique<'a>(name: String, taken: impl Iterator<Item = &'a str> + Cl
     }
     numbered(n)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldwarp::Vec3;
+    use moldwarp::mesh::RawMesh;
+
+    #[test]
+    fn a_surface_without_triangles_is_refused() {
+        let mesh = Mesh::new(RawMesh {
+            nodes: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z],
+            tets: vec![[0, 1, 2, 3]],
+            surface_groups: vec![("base".into(), vec![[0, 1, 2]]), ("top".into(), vec![])],
+            ..RawMesh::default()
+        })
+        .unwrap();
+        assert_eq!(surface((0..1, "base"), &mesh).unwrap(), 0);
+        let fault = surface((0..1, "top"), &mesh).unwrap_err();
+        assert_eq!(fault.message, "surface `top` is empty");
+    }
+
+    #[test]
+    fn a_taken_name_gets_a_number() {
+        let taken = ["a", "a-2"];
+        assert_eq!(unique("b".to_owned(), taken.into_iter()), "b");
+        assert_eq!(unique("a".to_owned(), taken.into_iter()), "a-3");
+    }
+}

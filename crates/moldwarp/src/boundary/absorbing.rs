@@ -2,7 +2,10 @@
 //!
 //! Jassim et al. Eq. 17–20, on a node with the area vectors of its faces (a third of each):
 //! C = Σ ρ A [α_n V_p n nᵀ + α_s V_s (I − n nᵀ)], K = Σ A [E_c/δ_n n nᵀ + G/δ_s (I − n nᵀ)].
-//! Both are taken at the end of the step: a lagged dashpot with α = 2.5 is unstable.
+//! Both are implicit at the node, a lagged dashpot with α = 2.5 is unstable: the dashpot takes the
+//! mean of the velocities before and after the kick, the spring the mean of the displacements
+//! (a⁻ + 2a + a⁺)/4. Taken at the end of the kick instead, C would act like an additional mass
+//! ½ Δt C on the node, half an element's worth for α = 2.5.
 
 use super::Constraints;
 use crate::mesh::{Face, Mesh, NONE};
@@ -93,10 +96,13 @@ fn face_matrices(
 impl AbsorbingNode {
     /// Velocity at the end of a kick of length `h` (s) of a node of mass `m` (kg), with mapped
     /// velocity `v` and force `f` without the boundary's:
-    /// (m + h C + h² K) v⁺ = m v + h (f − K a), in the subspace that `constraints` leave.
+    /// (m + ½hC + ¼h²K) v⁺ = (m − ½hC + ¼h²K) v + h (f − K a), in the subspace that `constraints`
+    /// leave.
     pub fn solve(&self, m: f64, v: Vec3, f: Vec3, h: f64, constraints: &Constraints) -> Vec3 {
-        let matrix = Mat3::IDENTITY * m + self.dashpot * h + self.spring * (h * h);
-        let right = v * m + (f - self.spring * self.displacement) * h;
+        let inertia = Mat3::IDENTITY * m + self.spring * (0.25 * h * h);
+        let half = self.dashpot * (0.5 * h);
+        let matrix = inertia + half;
+        let right = (inertia - half) * v + (f - self.spring * self.displacement) * h;
         match constraints.of(self.node) {
             None => matrix.inverse() * right,
             Some(held) => {
@@ -107,8 +113,10 @@ impl AbsorbingNode {
         }
     }
 
-    /// Force of the boundary on the node during a kick of length `h` that ends with `v`, N.
-    pub fn force(&self, v: Vec3, h: f64) -> Vec3 {
-        -(self.dashpot * v + self.spring * (self.displacement + v * h))
+    /// Force of the boundary on the node in a kick of length `h` that leads from `before` to
+    /// `after`, N.
+    pub fn force(&self, before: Vec3, after: Vec3, h: f64) -> Vec3 {
+        -(self.dashpot * (0.5 * (before + after))
+            + self.spring * (self.displacement + (after - before) * (0.25 * h)))
     }
 }

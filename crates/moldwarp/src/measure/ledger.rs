@@ -5,11 +5,11 @@
 //! when the new force is (in the kick). What a kick gives the particles follows from the nodal
 //! equation of motion,
 //!
-//!   ΔK = h Σ m_i a_i · (v_i + ½ h a_i) − ½ h² (Σ m_i a_i² − Σ m_p |Σ N_i a_i|²),
+//!   ΔK = h Σ m_i v_i · a'_i + ½ h² Σ m_p |Σ N_i a'_i|²
 //!
-//! where the second bracket is the price of the lumped mass matrix. `transfer` is the difference
-//! between the trapezoidal work of all forces and this: what the lumped matrix and the average of
-//! the remap take (or give back). The work of stresses on the mesh differs from that in the
+//! with a' the accelerations that particles receive. `transfer` is the difference between the
+//! trapezoidal work of all forces and this: what the lumped mass matrix and the average of the
+//! remap take (or give back). The work of stresses on the mesh differs from that in the
 //! particles by `integration` (σ̄ V_e against Σ σ_p V_p), `smoothing` (σ_m (Δε_v − Δε̄_v) V) and
 //! `advection` (particles have moved through the mesh by the time the second half is booked, and
 //! its gradients are those of the step's start). All are positive where energy is lost.
@@ -17,16 +17,6 @@
 use crate::Vec3;
 use crate::parallel::Sum;
 use crate::step::Node;
-
-/// Sums over the nodes in a kick, J.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct KickWork {
-    /// h Σ m a · (v + ½ h a).
-    gain: f64,
-    /// Σ m a².
-    square: f64,
-    half: DriftWork,
-}
 
 /// Works of nodal forces in half a drift, J.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,28 +55,6 @@ impl Sum for DriftWork {
             absorbing: self.absorbing + other.absorbing,
             reaction: self.reaction + other.reaction,
             kinetic: self.kinetic + other.kinetic,
-        }
-    }
-}
-
-impl KickWork {
-    /// Adds a node whose velocity changes over `h`; `backward` says whether a drift came before.
-    pub fn add(&mut self, node: &Node, gravity: Vec3, h: f64, backward: bool) {
-        let (m, v, a) = (node.mass, node.velocity, node.acceleration);
-        self.gain += h * m * a.dot(v + 0.5 * h * a);
-        self.square += m * a.length_squared();
-        if backward {
-            self.half.add(node, gravity);
-        }
-    }
-}
-
-impl Sum for KickWork {
-    fn plus(self, other: KickWork) -> KickWork {
-        KickWork {
-            gain: self.gain + other.gain,
-            square: self.square + other.square,
-            half: self.half.plus(other.half),
         }
     }
 }
@@ -172,7 +140,8 @@ pub struct Ledger {
     given: f64,
     /// Kinetic energy of the particles with their mid-step velocities, J.
     particles: f64,
-    kick: KickWork,
+    /// h Σ m_i v_i · a'_i of the last kick.
+    gain: f64,
     /// What the second part of the last kick will be booked with in the coming drift.
     pending_gain: f64,
     pending_damping: f64,
@@ -239,9 +208,13 @@ impl Ledger {
     }
 
     /// Second half of the last drift's work of nodal forces.
-    pub(crate) fn kick(&mut self, work: KickWork) {
-        self.half(work.half);
-        self.kick = work;
+    pub(crate) fn kick(&mut self, work: DriftWork) {
+        self.half(work);
+    }
+
+    /// h Σ m_i v_i · a'_i, the work that the accelerations received do on the velocities before.
+    pub(crate) fn received(&mut self, work: f64) {
+        self.gain = work;
     }
 
     fn half(&mut self, work: DriftWork) {
@@ -256,7 +229,7 @@ impl Ledger {
     /// Ends a kick: `sums` are Σ m_p |Σ N_i a_i|², what relaxation took, and the kinetic energy.
     pub(crate) fn end_kick(&mut self, sums: [f64; 3], before: f64, after: f64) {
         let h = before + after;
-        let gain = self.kick.gain - 0.5 * h * h * (self.kick.square - sums[0]);
+        let gain = self.gain + 0.5 * h * h * sums[0];
         let now = if h > 0.0 { before / h } else { 1.0 };
         self.now.transfer -= gain * now;
         self.now.damping += sums[1] * now;

@@ -3,5 +3,5 @@
 mod ledger;
 mod probe;
 
-pub use ledger::{DriftWork, Energies, KickWork, Ledger};
+pub use ledger::{DriftWork, Energies, Ledger};
 pub use probe::Probes;

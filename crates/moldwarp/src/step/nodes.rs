@@ -3,7 +3,7 @@
 
 use super::{BLOCK, Node};
 use crate::Vec3;
-use crate::measure::KickWork;
+use crate::measure::DriftWork;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
 use crate::tensor;
@@ -19,10 +19,9 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     let Simulation { plan, active, nodes, cells, constraints, absorbing, ledger, .. } = sim;
     let (active, mesh, gravity, cells) = (&*active, &plan.mesh, plan.gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
-    let backward = before > 0.0;
     let items = (0..nodes.len(), &mut nodes[..]);
     let work = fold(items, BLOCK, &|(slots, nodes): (Range<usize>, &mut [Node])| {
-        let mut work = KickWork::default();
+        let mut work = DriftWork::default();
         for (slot, node) in slots.zip(nodes) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
@@ -46,7 +45,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             node.absorbing = Vec3::ZERO;
             if let Some(boundary) = absorbing.of(mesh_node) {
                 let end = boundary.solve(node.mass, node.velocity, force, h, constraints);
-                node.absorbing = boundary.force(end, h);
+                node.absorbing = boundary.force(node.velocity, end, h);
                 force += node.absorbing;
             }
             node.acceleration = force / node.mass;
@@ -55,7 +54,9 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 node.acceleration = constraint.free * node.acceleration + held;
             }
             node.reaction = node.acceleration * node.mass - force;
-            work.add(node, gravity, h, backward);
+            if before > 0.0 {
+                work.add(node, gravity);
+            }
         }
         work
     });

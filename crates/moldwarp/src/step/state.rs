@@ -10,8 +10,10 @@ pub struct Node {
     pub mass: f64,
     /// v_i = Σ m_p v_p N_i / m_i before the kick, m/s.
     pub velocity: Vec3,
-    /// (change of velocity in the kick) / h, m/s².
+    /// F_i / m_i with all that holds the node, m/s².
     pub acceleration: Vec3,
+    /// The acceleration that particles receive: corrected for the lumping of the mass, m/s².
+    pub received: Vec3,
     /// Loads.
     pub load: Vec3,
     /// Local damping.
@@ -39,6 +41,10 @@ pub struct CellSums {
     pub mass: [f64; 4],
     /// Σ m_p v_p N_i for each node, kg m/s; after stage 3 with the new velocities.
     pub momentum: [Vec3; 4],
+    /// M_ij = Σ m_p N_i N_j of each pair of nodes: 01, 02, 03, 12, 13, 23, kg.
+    pub pairs: [f64; 6],
+    /// Σ_j M_ij (a_i − a_j) for each node if the cell is filled, N.
+    pub exchange: [Vec3; 4],
     /// Σ σ_p V_p, J.
     pub stress: Voigt,
     /// Σ V_p, m³.

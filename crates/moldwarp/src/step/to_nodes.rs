@@ -1,5 +1,6 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
+use super::mass::PAIRS;
 use super::{BLOCK, CellForce, CellSums, Node};
 use crate::mesh::NONE;
 use crate::parallel::{ByCell, fold};
@@ -36,6 +37,9 @@ fn sum_cells(sim: &mut Simulation) {
                     let share = n[i] * m;
                     sum.mass[i] += share;
                     sum.momentum[i] += v * share;
+                }
+                for (pair, &(i, j)) in sum.pairs.iter_mut().zip(&PAIRS) {
+                    *pair += n[i] * n[j] * m;
                 }
                 let volume = particles.volume[p];
                 add_scaled(&mut sum.stress, &particles.stress[p], volume);

@@ -1,0 +1,261 @@
+//! Nodes, elements and groups as they come out of a file, put together to a mesh.
+
+use super::super::{GmshProblem, MeshFile};
+use super::Result;
+use super::cursor::Cursor;
+use moldwarp::Vec3;
+use moldwarp::mesh::RawMesh;
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// What has been read so far. Nodes and elements are numbered from 0 in the file's order.
+#[derive(Default)]
+pub(super) struct Assembly {
+    numbers: HashMap<u64, u32>,
+    node_tags: Vec<u64>,
+    nodes: Vec<Vec3>,
+    tets: Vec<[u32; 4]>,
+    element_tags: Vec<u64>,
+    /// The physical group of each tetrahedron.
+    tet_groups: Vec<Option<u64>>,
+    triangles: BTreeMap<u64, Triangles>,
+    names: BTreeMap<(i64, u64), String>,
+}
+
+/// The triangles of a group; one that comes twice is kept once.
+#[derive(Default)]
+struct Triangles {
+    list: Vec<[u32; 3]>,
+    sorted: HashSet<[u32; 3]>,
+}
+
+impl Assembly {
+    /// Makes room; `count` must have been held against the length of the file.
+    pub(super) fn reserve_nodes(&mut self, count: u64) {
+        let count = count as usize;
+        self.numbers.reserve(count);
+        self.node_tags.reserve(count);
+        self.nodes.reserve(count);
+    }
+
+    /// Makes room; `count` must have been held against the length of the file.
+    pub(super) fn reserve_elements(&mut self, count: u64) {
+        let count = count as usize;
+        self.tets.reserve(count);
+        self.element_tags.reserve(count);
+        self.tet_groups.reserve(count);
+    }
+
+    /// A node by its tag, which was read last; its coordinates come in the same order.
+    pub(super) fn add_node(&mut self, cursor: &Cursor, tag: u64) -> Result<()> {
+        // A file with more nodes than 32 bits count would be over 100 GB.
+        let number = self.node_tags.len() as u32;
+        match self.numbers.entry(tag) {
+            Entry::Occupied(_) => Err(cursor.wrong(GmshProblem::TwoNodes(tag))),
+            Entry::Vacant(entry) => {
+                entry.insert(number);
+                self.node_tags.push(tag);
+                Ok(())
+            }
+        }
+    }
+
+    pub(super) fn add_coordinates(&mut self, x: Vec3) {
+        self.nodes.push(x);
+    }
+
+    /// The number of the node whose tag was read last.
+    #[inline]
+    pub(super) fn node_number(&self, cursor: &Cursor, node: u64, element: u64) -> Result<u32> {
+        match self.numbers.get(&node) {
+            Some(&number) => Ok(number),
+            None => Err(cursor.wrong(GmshProblem::NoSuchNode { element, node })),
+        }
+    }
+
+    pub(super) fn add_triangle(&mut self, nodes: [u32; 3], groups: &[u64]) {
+        let mut key = nodes;
+        key.sort_unstable();
+        for &group in groups {
+            let triangles = self.triangles.entry(group).or_default();
+            if triangles.sorted.insert(key) {
+                triangles.list.push(nodes);
+            }
+        }
+    }
+
+    pub(super) fn add_tetrahedron(&mut self, tag: u64, nodes: [u32; 4], group: Option<u64>) {
+        self.tets.push(nodes);
+        self.element_tags.push(tag);
+        self.tet_groups.push(group);
+    }
+
+    pub(super) fn name_group(&mut self, dimension: i64, tag: u64, name: &str) {
+        self.names.insert((dimension, tag), name.to_owned());
+    }
+
+    fn group_name(&self, dimension: i64, tag: u64) -> String {
+        match self.names.get(&(dimension, tag)) {
+            Some(name) => name.clone(),
+            None => tag.to_string(),
+        }
+    }
+
+    pub(super) fn two_volumes(&self, element: u64, first: u64, second: u64) -> GmshProblem {
+        GmshProblem::TwoVolumes {
+            element,
+            first: self.group_name(3, first),
+            second: self.group_name(3, second),
+        }
+    }
+
+    /// The mesh; `command` is what makes one in three dimensions.
+    pub(super) fn finish(mut self, command: String) -> std::result::Result<MeshFile, GmshProblem> {
+        if self.tets.is_empty() {
+            return Err(GmshProblem::NoTetrahedra { command });
+        }
+        self.check_same_nodes()?;
+        self.check_same_tags()?;
+        let mut notes = Vec::new();
+        self.drop_unused_nodes(&mut notes);
+        let mut members: BTreeMap<u64, Vec<u32>> = BTreeMap::new();
+        for (e, group) in self.tet_groups.iter().enumerate() {
+            if let Some(group) = *group {
+                members.entry(group).or_default().push(e as u32);
+            }
+        }
+        self.check_names(3, "volume", members.keys())?;
+        self.check_names(2, "surface", self.triangles.keys())?;
+        self.note_empty_groups(&members, &mut notes);
+        let triangles = std::mem::take(&mut self.triangles);
+        let volume_groups = members
+            .into_iter()
+            .map(|(tag, members)| (self.group_name(3, tag), members))
+            .collect();
+        let surface_groups = triangles
+            .into_iter()
+            .map(|(tag, triangles)| (self.group_name(2, tag), triangles.list))
+            .collect();
+        Ok(MeshFile {
+            raw: RawMesh {
+                nodes: self.nodes,
+                tets: self.tets,
+                volume_groups,
+                surface_groups,
+            },
+            node_tags: self.node_tags,
+            element_tags: self.element_tags,
+            notes,
+        })
+    }
+
+    /// A named group without elements is left out, since nothing could be done with it.
+    fn note_empty_groups(&self, volumes: &BTreeMap<u64, Vec<u32>>, notes: &mut Vec<String>) {
+        let named = self.names.keys().any(|&(dimension, _)| dimension >= 2);
+        if named && volumes.is_empty() && self.triangles.is_empty() {
+            notes.push(
+                "no element is in one of the file's physical groups; MSH 2.2 loses them under \
+                 Mesh.SaveAll, MSH 4.1 does not"
+                    .to_owned(),
+            );
+            return;
+        }
+        for (&(dimension, tag), name) in &self.names {
+            let (kind, element, empty) = match dimension {
+                3 => ("volume", "tetrahedron", !volumes.contains_key(&tag)),
+                2 => ("surface", "triangle", !self.triangles.contains_key(&tag)),
+                _ => continue,
+            };
+            if empty {
+                notes.push(format!(
+                    "physical {kind} `{name}` has no {element} in the file"
+                ));
+            }
+        }
+    }
+
+    /// A tetrahedron in two volume groups stands twice in a file of MSH 2.2, under two tags.
+    fn check_same_nodes(&self) -> std::result::Result<(), GmshProblem> {
+        let mut sorted: Vec<([u32; 4], u32)> = (0..)
+            .zip(&self.tets)
+            .map(|(e, &tet)| {
+                let mut key = tet;
+                key.sort_unstable();
+                (key, e)
+            })
+            .collect();
+        sorted.sort_unstable();
+        // The first in the file is the one to name.
+        let twice = sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+        let Some((a, b)) = twice.map(|p| (p[0].1 as usize, p[1].1 as usize)).min() else {
+            return Ok(());
+        };
+        let [first, second] = [a, b].map(|e| self.element_tags[e]);
+        Err(match (self.tet_groups[a], self.tet_groups[b]) {
+            (Some(g), Some(h)) if g != h => self.two_volumes(first, g, h),
+            _ => GmshProblem::SameTetrahedron { first, second },
+        })
+    }
+
+    fn check_same_tags(&self) -> std::result::Result<(), GmshProblem> {
+        let mut sorted = self.element_tags.clone();
+        sorted.sort_unstable();
+        match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(GmshProblem::TwoElements(pair[0])),
+            None => Ok(()),
+        }
+    }
+
+    /// Two groups of one name could not be told apart by it.
+    fn check_names<'a>(
+        &self,
+        dimension: i64,
+        kind: &'static str,
+        tags: impl Iterator<Item = &'a u64>,
+    ) -> std::result::Result<(), GmshProblem> {
+        let mut seen = BTreeMap::new();
+        for &tag in tags {
+            let name = self.group_name(dimension, tag);
+            if let Some(first) = seen.insert(name.clone(), tag) {
+                return Err(GmshProblem::TwoNames {
+                    kind,
+                    first,
+                    second: tag,
+                    name,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps the nodes of tetrahedra, and those of triangles in a group: should such a triangle
+    /// be no face of a tetrahedron, it is for the mesh to say so.
+    fn drop_unused_nodes(&mut self, notes: &mut Vec<String>) {
+        let mut used = vec![false; self.nodes.len()];
+        let groups = self.triangles.values().flat_map(|t| &t.list);
+        for &n in self.tets.iter().flatten().chain(groups.flatten()) {
+            used[n as usize] = true;
+        }
+        let dropped = used.iter().filter(|&&u| !u).count();
+        if dropped == 0 {
+            return;
+        }
+        notes.push(match dropped {
+            1 => "1 node belongs to no tetrahedron and was dropped".to_owned(),
+            n => format!("{n} nodes belong to no tetrahedron and were dropped"),
+        });
+        let mut renumbered = vec![0; used.len()];
+        let kept = renumbered.iter_mut().zip(&used).filter(|(_, used)| **used);
+        for (next, (number, _)) in kept.enumerate() {
+            *number = next as u32;
+        }
+        let mut keep = used.iter();
+        self.nodes.retain(|_| keep.next() == Some(&true));
+        let mut keep = used.iter();
+        self.node_tags.retain(|_| keep.next() == Some(&true));
+        let lists = self.triangles.values_mut().flat_map(|t| &mut t.list);
+        for n in self.tets.iter_mut().flatten().chain(lists.flatten()) {
+            *n = renumbered[*n as usize];
+        }
+    }
+}

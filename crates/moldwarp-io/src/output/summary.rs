@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 
 /// What is kept of a run. SI units throughout.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     pub case: String,
     pub title: String,

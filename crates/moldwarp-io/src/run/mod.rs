@@ -3,6 +3,7 @@
 mod frames;
 mod history;
 mod log;
+mod recorder;
 mod schedule;
 mod state;
 
@@ -13,16 +14,13 @@ pub(crate) use history::{Expected, columns};
 
 use crate::output::csv::CsvError;
 use crate::output::hash::scene_hash;
-use crate::output::summary::Compared;
 use crate::output::{FileError, Folder, FolderError, Summary, write_whole};
-use crate::scene::{Every, Scene};
-use frames::Frames;
-use history::History;
+use crate::scene::Scene;
 use log::Log;
 use moldwarp::measure::Energies;
 use moldwarp::plan::Until;
 use moldwarp::{SetupError, Simulation, Stop};
-use schedule::Schedule;
+use recorder::Recorder;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -163,59 +161,57 @@ pub fn run(
     let mut log = Log::create(&folder.log(), start)?;
     log.line(&format!("moldwarp {}", env!("CARGO_PKG_VERSION")))?;
     log.line(&format!("scene {scene_hash}, {} threads", options.threads))?;
-    for note in &notes {
-        log.line(note)?;
-    }
+    notes.iter().try_for_each(|note| log.line(note))?;
     write_whole(&folder.scene(), |out| out.write_all(scene.text.as_bytes()))?;
     let end = end_time(&sim);
-    let mut recorder = Recorder {
-        frame_schedule: schedule(scene.output.frames, end),
-        history_schedule: schedule(scene.output.history, end),
-        frames: Frames::new(&folder),
-        history: History::create(&folder, &columns, expected)?,
-        last: [None; 2],
-    };
-    observer.begin(&sim, &folder, &notes);
+    let mut recorder = Recorder::new(&scene.output, end, &folder, &columns, expected)?;
     let mut pace = Pace::default();
-    let stopped = steps(&mut sim, &mut recorder, &mut log, &mut pace, observer)?;
+    observer.begin(&sim, &folder, &notes);
+    let stopped = steps(&mut sim, &mut recorder, &mut log, &mut pace, observer);
     observer.end();
+    let stopped = stopped?;
 
     let (compare, problems) = recorder.compared();
-    for problem in &problems {
-        log.line(problem)?;
-    }
-    let energies = sim.energies();
-    let energy_names = Energies::NAMES.map(str::to_owned);
+    problems.iter().try_for_each(|problem| log.line(problem))?;
     let summary = Summary {
         case: scene.case,
         title,
         exit: stopped.as_ref().map_or("done".into(), Stop::to_string),
-        particles: sim.particles().len(),
-        elements: sim.mesh().tets.len(),
-        steps: sim.steps(),
-        time: sim.time(),
         wall_time: start.elapsed().as_secs_f64(),
-        particle_steps_per_second: pace.rate(),
-        min_dt: pace.bounds.map(|b| b[0]),
-        max_dt: pace.bounds.map(|b| b[1]),
-        energy: energy_names.into_iter().zip(energies.values()).collect(),
-        energy_turned_over: sim.energy_turned_over(),
         compare,
         threads: options.threads,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene_hash,
-        state_hash: state_hash(&sim),
         units: columns,
+        ..computed(&sim, &pace)
     };
     log.line(&format!("{} at step {}", summary.exit, summary.steps))?;
     summary.write(&folder.summary())?;
     Ok(Outcome {
         folder,
         summary,
-        energies,
+        energies: sim.energies(),
         stopped,
         problems,
     })
+}
+
+/// The part of the summary that the simulation and its pace tell.
+fn computed(sim: &Simulation, pace: &Pace) -> Summary {
+    let names = Energies::NAMES.map(str::to_owned).into_iter();
+    Summary {
+        particles: sim.particles().len(),
+        elements: sim.mesh().tets.len(),
+        steps: sim.steps(),
+        time: sim.time(),
+        particle_steps_per_second: pace.rate(),
+        min_dt: pace.bounds.map(|b| b[0]),
+        max_dt: pace.bounds.map(|b| b[1]),
+        energy: names.zip(sim.energies().values()).collect(),
+        energy_turned_over: sim.energy_turned_over(),
+        state_hash: state_hash(sim),
+        ..Summary::default()
+    }
 }
 
 /// The step loop. A guard that stops it is no error: what was computed until then is kept.
@@ -279,15 +275,6 @@ pub(crate) fn end_time(sim: &Simulation) -> f64 {
     })
 }
 
-/// Output times of a run that ends at `end`, s; none if no output is wanted.
-fn schedule(every: Every, end: f64) -> Option<Schedule> {
-    match every {
-        Every::Count(0) => None,
-        Every::Count(count) => Some(Schedule::every(end / f64::from(count))),
-        Every::Interval(interval) => Some(Schedule::every(interval)),
-    }
-}
-
 /// What the step loop has done.
 #[derive(Debug, Default)]
 struct Pace {
@@ -311,65 +298,5 @@ impl Pace {
         } else {
             0.0
         }
-    }
-}
-
-/// Frames and history with their times.
-struct Recorder {
-    /// None: no frames at all.
-    frame_schedule: Option<Schedule>,
-    history_schedule: Option<Schedule>,
-    frames: Frames,
-    history: History,
-    /// Steps made at the last frame and at the last row.
-    last: [Option<u64>; 2],
-}
-
-impl Recorder {
-    /// Writes what is due now.
-    fn record(&mut self, sim: &Simulation) -> Result<(), FileError> {
-        let due =
-            |schedule: &mut Option<Schedule>| schedule.as_mut().is_some_and(|s| s.due(sim.time()));
-        if due(&mut self.frame_schedule) {
-            self.frame(sim)?;
-        }
-        if due(&mut self.history_schedule) {
-            self.row(sim)?;
-        }
-        Ok(())
-    }
-
-    /// Writes the end, unless it is written already.
-    fn record_last(&mut self, sim: &Simulation) -> Result<(), FileError> {
-        if self.frame_schedule.is_some() && self.last[0] != Some(sim.steps()) {
-            self.frame(sim)?;
-        }
-        if self.last[1] != Some(sim.steps()) {
-            self.row(sim)?;
-        }
-        self.history.finish()
-    }
-
-    fn frame(&mut self, sim: &Simulation) -> Result<(), FileError> {
-        self.last[0] = Some(sim.steps());
-        self.frames.write(sim)
-    }
-
-    fn row(&mut self, sim: &Simulation) -> Result<(), FileError> {
-        self.last[1] = Some(sim.steps());
-        self.history.write(sim)
-    }
-
-    /// The comparisons, and those that could not be made.
-    fn compared(&self) -> (Vec<Compared>, Vec<String>) {
-        let mut done = Vec::new();
-        let mut problems = Vec::new();
-        for expected in &self.history.expected {
-            match expected.compared() {
-                Ok(compared) => done.push(compared),
-                Err(problem) => problems.push(problem),
-            }
-        }
-        (done, problems)
     }
 }

@@ -19,7 +19,9 @@ fn main() -> ExitCode {
             None => return usage(),
         },
     };
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("results").join(fidelity.name());
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("results")
+        .join(fidelity.name());
     let mut all_passed = true;
     for case in chosen {
         let start = Instant::now();
@@ -34,7 +36,11 @@ fn main() -> ExitCode {
         }
     }
     println!("tables and plots are in {}", folder.display());
-    if all_passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if all_passed {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }
 
 fn usage() -> ExitCode {

@@ -32,31 +32,50 @@ const COLOURS: [RGBColor; 7] = [
 
 impl Plot {
     pub fn new(title: &str, x: &str, y: &str) -> Plot {
-        Plot { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), curves: Vec::new() }
+        Plot {
+            title: title.to_owned(),
+            x: x.to_owned(),
+            y: y.to_owned(),
+            curves: Vec::new(),
+        }
     }
 
     pub fn line(&mut self, label: impl Into<String>, points: Vec<(f64, f64)>) {
-        self.curves.push(Curve { label: label.into(), points, dashed: false });
+        self.curves.push(Curve {
+            label: label.into(),
+            points,
+            dashed: false,
+        });
     }
 
     pub fn dashed(&mut self, label: impl Into<String>, points: Vec<(f64, f64)>) {
-        self.curves.push(Curve { label: label.into(), points, dashed: true });
+        self.curves.push(Curve {
+            label: label.into(),
+            points,
+            dashed: true,
+        });
     }
 
     fn ranges(&self) -> [(f64, f64); 2] {
         let all = || self.curves.iter().flat_map(|c| &c.points);
         let range = |values: &mut dyn Iterator<Item = f64>| {
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            });
             let margin = 0.04 * (high - low).max(1e-12 * high.abs().max(1e-300));
             (low - margin, high + margin)
         };
-        [range(&mut all().map(|p| p.0)), range(&mut all().map(|p| p.1))]
+        [
+            range(&mut all().map(|p| p.0)),
+            range(&mut all().map(|p| p.1)),
+        ]
     }
 
     /// The plot as the text of an SVG file.
     pub fn svg(&self) -> String {
         let mut text = String::new();
-        self.draw(&mut text).expect("a string takes what is drawn to it");
+        self.draw(&mut text)
+            .expect("a string takes what is drawn to it");
         text
     }
 

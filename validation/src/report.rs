@@ -27,12 +27,20 @@ pub struct Table {
 
 impl Table {
     pub fn new(columns: &[&str]) -> Table {
-        Table { columns: columns.iter().map(|c| c.to_string()).collect(), rows: Vec::new() }
+        Table {
+            columns: columns.iter().map(|c| c.to_string()).collect(),
+            rows: Vec::new(),
+        }
     }
 
     pub fn row(&mut self, values: &[&dyn std::fmt::Display]) {
-        assert_eq!(values.len(), self.columns.len(), "a row has a value for each column");
-        self.rows.push(values.iter().map(|v| v.to_string()).collect());
+        assert_eq!(
+            values.len(),
+            self.columns.len(),
+            "a row has a value for each column"
+        );
+        self.rows
+            .push(values.iter().map(|v| v.to_string()).collect());
     }
 
     fn csv(&self) -> String {
@@ -53,7 +61,11 @@ pub struct Report {
 impl Report {
     /// Notes a figure that must not exceed `limit`.
     pub fn check(&mut self, what: impl Into<String>, value: f64, limit: f64) {
-        self.checks.push(Check { what: what.into(), value, limit });
+        self.checks.push(Check {
+            what: what.into(),
+            value,
+            limit,
+        });
     }
 
     pub fn passed(&self) -> bool {
@@ -65,8 +77,12 @@ impl Report {
         let mut text = String::new();
         for check in &self.checks {
             let mark = if check.passed() { "ok  " } else { "FAIL" };
-            writeln!(text, "  {mark} {}: {:.4e} (limit {:.1e})", check.what, check.value, check.limit)
-                .expect("a string takes what is written to it");
+            writeln!(
+                text,
+                "  {mark} {}: {:.4e} (limit {:.1e})",
+                check.what, check.value, check.limit
+            )
+            .expect("a string takes what is written to it");
         }
         text
     }
@@ -78,7 +94,11 @@ impl Report {
         let mut checks = Table::new(&["figure", "value", "limit"]);
         for check in &self.checks {
             let what = check.what.replace(',', ";");
-            checks.row(&[&what, &format!("{:.4e}", check.value), &format!("{:.1e}", check.limit)]);
+            checks.row(&[
+                &what,
+                &format!("{:.4e}", check.value),
+                &format!("{:.1e}", check.limit),
+            ]);
         }
         std::fs::write(folder.join(format!("{case}-checks.csv")), checks.csv())?;
         for (name, plot) in &self.plots {

@@ -20,7 +20,10 @@ pub fn column_with_room(n: usize, material: NamedMaterial, end: f64) -> Plan {
     let mesh = box_mesh(size, [2, 2, n + room]).expect("a box is a good mesh");
     let mut plan = column(mesh, material, end);
     let max = Vec3::new(size.x, size.y, 1.0);
-    plan.bodies[0].place = Place::Region(Region::Box { min: Vec3::ZERO, max });
+    plan.bodies[0].place = Place::Region(Region::Box {
+        min: Vec3::ZERO,
+        max,
+    });
     plan
 }
 
@@ -30,8 +33,15 @@ pub fn papers_soil() -> NamedMaterial {
 }
 
 pub fn elastic(young_modulus: f64, poisson_ratio: f64, density: f64) -> NamedMaterial {
-    let model = Material::LinearElastic(LinearElastic { young_modulus, poisson_ratio });
-    NamedMaterial { name: "soil".to_owned(), density, model }
+    let model = Material::LinearElastic(LinearElastic {
+        young_modulus,
+        poisson_ratio,
+    });
+    NamedMaterial {
+        name: "soil".to_owned(),
+        density,
+        model,
+    }
 }
 
 /// One body that fills the whole mesh, nothing holds or loads it.
@@ -64,27 +74,45 @@ pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
 pub fn bound(plan: &mut Plan, surfaces: &[&str], kind: BoundaryKind) {
     let name = surfaces.join("+");
     let surfaces = surfaces.iter().map(|s| surface(plan, s)).collect();
-    plan.boundaries.push(Boundary { name, surfaces, kind });
+    plan.boundaries.push(Boundary {
+        name,
+        surfaces,
+        kind,
+    });
 }
 
 /// Adds a traction that is there from the start.
 pub fn load(plan: &mut Plan, on: &str, traction: Vec3) {
     let surfaces = vec![surface(plan, on)];
     let (kind, function) = (LoadKind::Traction(traction), Function::Constant);
-    plan.loads.push(Load { name: on.to_owned(), surfaces, body: 0, kind, function });
+    plan.loads.push(Load {
+        name: on.to_owned(),
+        surfaces,
+        body: 0,
+        kind,
+        function,
+    });
 }
 
 /// Adds a probe on a surface.
 pub fn probe(plan: &mut Plan, name: &str, on: &str, quantities: &[Quantity]) {
     let target = Target::Surface(surface(plan, on));
-    plan.probes.push(Probe { name: name.to_owned(), target, quantities: quantities.to_vec() });
+    plan.probes.push(Probe {
+        name: name.to_owned(),
+        target,
+        quantities: quantities.to_vec(),
+    });
 }
 
 fn surface(plan: &Plan, name: &str) -> usize {
-    plan.mesh.surface(name).unwrap_or_else(|| panic!("the mesh has no surface {name}"))
+    plan.mesh
+        .surface(name)
+        .unwrap_or_else(|| panic!("the mesh has no surface {name}"))
 }
 
-pub const FIXED: BoundaryKind = BoundaryKind::Fixed { directions: [true; 3] };
+pub const FIXED: BoundaryKind = BoundaryKind::Fixed {
+    directions: [true; 3],
+};
 pub const SIDES: [&str; 4] = ["x-min", "x-max", "y-min", "y-max"];
 
 /// A column with rollers on its sides.
@@ -105,7 +133,10 @@ pub struct Balance {
 
 /// Runs to the end; `look` is called at the start and after every step.
 pub fn run(plan: Plan, look: impl FnMut(&Simulation)) -> Balance {
-    run_from(Simulation::new(plan).unwrap_or_else(|e| panic!("{e}")), look)
+    run_from(
+        Simulation::new(plan).unwrap_or_else(|e| panic!("{e}")),
+        look,
+    )
 }
 
 /// Runs a simulation to its end; `look` is called at the start and after every step.
@@ -120,12 +151,18 @@ pub fn run_from(mut simulation: Simulation, mut look: impl FnMut(&Simulation)) -
         look(&simulation);
     }
     let whole = simulation.energy_turned_over();
-    Balance { residual: residual / whole, numerical: numerical / whole }
+    Balance {
+        residual: residual / whole,
+        numerical: numerical / whole,
+    }
 }
 
 /// The value of a probe's column.
 pub fn value(simulation: &Simulation, column: &str) -> f64 {
-    let at = simulation.probe_columns().iter().position(|c| c.0 == column);
+    let at = simulation
+        .probe_columns()
+        .iter()
+        .position(|c| c.0 == column);
     let mut values = Vec::new();
     simulation.probe_values(&mut values);
     values[at.unwrap_or_else(|| panic!("no column {column}"))]

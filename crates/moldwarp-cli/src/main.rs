@@ -1,1 +1,67 @@
-fn main() {}
+//! The command `moldwarp`.
+
+mod args;
+mod check;
+mod exit;
+mod new;
+mod progress;
+mod run;
+mod text;
+
+use args::{Args, Command};
+use clap::Parser;
+use exit::Exit;
+use std::io::Write;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let done = match Args::parse().command {
+        Command::Run(args) => run::run(&args),
+        Command::Check(args) => check::check(&args),
+        Command::New(args) => new::new(&args),
+    };
+    match done {
+        Ok(exit) => exit.into(),
+        Err(failure) => {
+            eprintln!("{:?}", failure.report);
+            failure.exit.into()
+        }
+    }
+}
+
+/// Writes to standard output. Someone who has stopped reading, as `head` does, is no failure:
+/// what was computed stands in files.
+fn say(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// Why a command ended early: what is shown, and the exit code.
+struct Failure {
+    report: miette::Report,
+    exit: Exit,
+}
+
+impl Failure {
+    fn new(exit: Exit, report: impl Into<miette::Report>) -> Failure {
+        Failure {
+            report: report.into(),
+            exit,
+        }
+    }
+
+    /// Wrong input or arguments.
+    fn input(report: impl Into<miette::Report>) -> Failure {
+        Failure::new(Exit::Input, report)
+    }
+}
+
+impl From<moldwarp_io::run::RunError> for Failure {
+    fn from(error: moldwarp_io::run::RunError) -> Failure {
+        let exit = if error.is_input() {
+            Exit::Input
+        } else {
+            Exit::Files
+        };
+        Failure::new(exit, error)
+    }
+}

@@ -1,5 +1,7 @@
 //! Files of moldwarp: scenes and meshes in, results out. The solver itself knows of none.
 
+pub mod check;
 pub mod mesh;
 pub mod output;
+pub mod run;
 pub mod scene;

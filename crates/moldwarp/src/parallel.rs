@@ -91,7 +91,11 @@ pub struct ByCell<'a, P> {
 impl<'a, P: Split> ByCell<'a, P> {
     /// All cells with arrays over all particles.
     pub fn new(offsets: &'a [u32], particles: P) -> ByCell<'a, P> {
-        ByCell { cells: 0..offsets.len() - 1, offsets, particles }
+        ByCell {
+            cells: 0..offsets.len() - 1,
+            offsets,
+            particles,
+        }
     }
 
     /// Number of the first particle.
@@ -107,10 +111,20 @@ impl<P: Split> Split for ByCell<'_, P> {
     fn split(self, at: usize) -> (Self, Self) {
         let first = self.first();
         let (low, high) = self.cells.split(at);
-        let (before, after) = self.particles.split(self.offsets[high.start] as usize - first);
+        let (before, after) = self
+            .particles
+            .split(self.offsets[high.start] as usize - first);
         (
-            ByCell { cells: low, offsets: self.offsets, particles: before },
-            ByCell { cells: high, offsets: self.offsets, particles: after },
+            ByCell {
+                cells: low,
+                offsets: self.offsets,
+                particles: before,
+            },
+            ByCell {
+                cells: high,
+                offsets: self.offsets,
+                particles: after,
+            },
         )
     }
 }
@@ -150,7 +164,11 @@ impl Default for Smallest {
 impl Sum for Smallest {
     fn plus(self, other: Smallest) -> Smallest {
         // NaN must win, so that it is noticed.
-        Smallest(if self.0 <= other.0 || self.0.is_nan() { self.0 } else { other.0 })
+        Smallest(if self.0 <= other.0 || self.0.is_nan() {
+            self.0
+        } else {
+            other.0
+        })
     }
 }
 
@@ -181,7 +199,10 @@ mod tests {
     use super::*;
 
     fn sum_with(threads: usize, values: &[f64]) -> f64 {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| fold(values, 7, &|part: &[f64]| part.iter().sum::<f64>()))
     }
 
@@ -202,7 +223,10 @@ mod tests {
         let all = ByCell::new(&offsets, &mut data[..]);
         fold(all, 1, &|one: ByCell<&mut [u32]>| {
             let (from, to) = (one.offsets[one.cells.start], one.offsets[one.cells.end]);
-            assert_eq!(one.particles.iter().copied().collect::<Vec<_>>(), (from..to).collect::<Vec<_>>());
+            assert_eq!(
+                one.particles.iter().copied().collect::<Vec<_>>(),
+                (from..to).collect::<Vec<_>>()
+            );
         });
     }
 }

@@ -31,9 +31,19 @@ pub enum Stop {
         "particle {id} of body `{body}` left the mesh at {position} m, {time:e} s after the start \
          in stage `{stage}`: give it room, or check boundaries, loads and stiffness"
     )]
-    LeftTheMesh { id: u32, body: String, position: Vec3, stage: String, time: f64 },
+    LeftTheMesh {
+        id: u32,
+        body: String,
+        position: Vec3,
+        stage: String,
+        time: f64,
+    },
     #[error("stage `{stage}`, {time:e} s after the start: {error}")]
-    TimeStep { error: TimeStepError, stage: String, time: f64 },
+    TimeStep {
+        error: TimeStepError,
+        stage: String,
+        time: f64,
+    },
 }
 
 /// Where in time a simulation is.
@@ -112,7 +122,11 @@ impl Simulation {
             .iter()
             .map(|body| {
                 let elastic = plan.materials[body.material].model.elasticity();
-                [elastic.lame(), elastic.shear_modulus(), elastic.constrained_modulus()]
+                [
+                    elastic.lame(),
+                    elastic.shear_modulus(),
+                    elastic.constrained_modulus(),
+                ]
             })
             .collect();
         let mut simulation = Simulation {
@@ -143,7 +157,12 @@ impl Simulation {
     /// Gives every particle the velocity (m/s) that `velocity` has at its position (m). For the
     /// start of a run, before the first step.
     pub fn set_velocity(&mut self, velocity: impl Fn(Vec3) -> Vec3) -> Result<(), Stop> {
-        for (v, &x) in self.particles.velocity.iter_mut().zip(&self.particles.position) {
+        for (v, &x) in self
+            .particles
+            .velocity
+            .iter_mut()
+            .zip(&self.particles.position)
+        {
             *v = velocity(x);
         }
         self.ledger = Ledger::default();
@@ -171,7 +190,11 @@ impl Simulation {
         }
         self.kick(0.5 * dt, 0.0)?;
         self.clock.stage += 1;
-        if self.finished() { Ok(()) } else { self.begin_stage() }
+        if self.finished() {
+            Ok(())
+        } else {
+            self.begin_stage()
+        }
     }
 
     fn begin_stage(&mut self) -> Result<(), Stop> {
@@ -182,7 +205,13 @@ impl Simulation {
         if !stage.initial_velocities.is_empty() || self.clock.stage == 0 {
             for &(body, velocity) in &stage.initial_velocities {
                 let of_body = self.particles.body.iter().map(|&b| usize::from(b) == body);
-                for (v, _) in self.particles.velocity.iter_mut().zip(of_body).filter(|p| p.1) {
+                for (v, _) in self
+                    .particles
+                    .velocity
+                    .iter_mut()
+                    .zip(of_body)
+                    .filter(|p| p.1)
+                {
                     *v = velocity;
                 }
             }
@@ -195,7 +224,12 @@ impl Simulation {
     fn given_velocities(&mut self) {
         self.clock.given_velocities = true;
         let p = &self.particles;
-        let kinetic = p.mass.iter().zip(&p.velocity).map(|(m, v)| 0.5 * m * v.length_squared()).sum();
+        let kinetic = p
+            .mass
+            .iter()
+            .zip(&p.velocity)
+            .map(|(m, v)| 0.5 * m * v.length_squared())
+            .sum();
         self.ledger.give(kinetic);
     }
 
@@ -213,12 +247,15 @@ impl Simulation {
 
     pub(crate) fn local_damping(&self) -> f64 {
         let stage = self.clock.stage.min(self.plan.stages.len() - 1);
-        self.plan.stages[stage].damping.unwrap_or(self.plan.numerics.damping)
+        self.plan.stages[stage]
+            .damping
+            .unwrap_or(self.plan.numerics.damping)
     }
 
     /// Sorts particles by element and numbers the active cells and nodes anew.
     pub(crate) fn reorder(&mut self) {
-        self.order.sort(&mut self.particles, self.plan.mesh.tets.len());
+        self.order
+            .sort(&mut self.particles, self.plan.mesh.tets.len());
         for point in &mut self.loads {
             point.particle = self.order.destination[point.particle as usize];
         }
@@ -234,7 +271,10 @@ impl Simulation {
         self.nodes.clear();
         self.nodes.resize(self.active.nodes.len(), Node::default());
         for (node, &mesh_node) in self.spare_nodes.iter().zip(&old) {
-            if let Some(new) = self.nodes.get_mut(self.active.slot_of_node[mesh_node as usize] as usize) {
+            if let Some(new) = self
+                .nodes
+                .get_mut(self.active.slot_of_node[mesh_node as usize] as usize)
+            {
                 *new = *node;
             }
         }
@@ -246,13 +286,19 @@ impl Simulation {
 
     pub(crate) fn no_time_step(&self, error: TimeStepError) -> Stop {
         let stage = self.plan.stages[self.clock.stage].name.clone();
-        Stop::TimeStep { error, stage, time: self.clock.time }
+        Stop::TimeStep {
+            error,
+            stage,
+            time: self.clock.time,
+        }
     }
 
     pub(crate) fn left_the_mesh(&self, particle: usize) -> Stop {
         Stop::LeftTheMesh {
             id: self.particles.id[particle],
-            body: self.plan.bodies[usize::from(self.particles.body[particle])].name.clone(),
+            body: self.plan.bodies[usize::from(self.particles.body[particle])]
+                .name
+                .clone(),
             position: self.particles.position[particle],
             stage: self.plan.stages[self.clock.stage].name.clone(),
             time: self.clock.time,
@@ -350,7 +396,11 @@ impl Simulation {
     pub fn node_fields(&self) -> NodeFields {
         let count = self.plan.mesh.nodes.len();
         let zero = vec![Vec3::ZERO; count];
-        let mut fields = NodeFields { velocity: zero.clone(), mass: vec![0.0; count], reaction: zero };
+        let mut fields = NodeFields {
+            velocity: zero.clone(),
+            mass: vec![0.0; count],
+            reaction: zero,
+        };
         for (node, &n) in self.nodes.iter().zip(&self.active.nodes) {
             fields.velocity[n as usize] = node.grid_velocity;
             fields.mass[n as usize] = node.mass;
@@ -361,15 +411,23 @@ impl Simulation {
 
     /// A mesh node, if particles touch it.
     pub(crate) fn node(&self, mesh_node: u32) -> Option<&Node> {
-        self.nodes.get(self.active.slot_of_node[mesh_node as usize] as usize)
+        self.nodes
+            .get(self.active.slot_of_node[mesh_node as usize] as usize)
     }
 
     /// Mean stress of the particles in an element, Pa, if there are any.
     pub(crate) fn element_stress(&self, e: u32) -> Option<Voigt> {
-        let (first, last) = (self.order.offsets[e as usize], self.order.offsets[e as usize + 1]);
+        let (first, last) = (
+            self.order.offsets[e as usize],
+            self.order.offsets[e as usize + 1],
+        );
         let (mut stress, mut volume) = ([0.0; 6], 0.0);
         for p in first as usize..last as usize {
-            crate::tensor::add_scaled(&mut stress, &self.particles.stress[p], self.particles.volume[p]);
+            crate::tensor::add_scaled(
+                &mut stress,
+                &self.particles.stress[p],
+                self.particles.volume[p],
+            );
             volume += self.particles.volume[p];
         }
         (volume > 0.0).then(|| stress.map(|s| s / volume))
@@ -379,18 +437,29 @@ impl Simulation {
     pub(crate) fn acceleration_at(&self, p: usize) -> Vec3 {
         let e = self.particles.element[p] as usize;
         let n = self.plan.mesh.barycentric(e, self.particles.position[p]);
-        let corner = |i: usize| self.node(self.plan.mesh.tets[e][i]).map_or(Vec3::ZERO, |n| n.acceleration);
+        let corner = |i: usize| {
+            self.node(self.plan.mesh.tets[e][i])
+                .map_or(Vec3::ZERO, |n| n.acceleration)
+        };
         (0..4).map(|i| corner(i) * n[i]).sum()
     }
 }
 
 fn check_reactions(plan: &Plan) -> Result<(), SetupError> {
-    for probe in plan.probes.iter().filter(|p| p.quantities.contains(&Quantity::Reaction)) {
+    for probe in plan
+        .probes
+        .iter()
+        .filter(|p| p.quantities.contains(&Quantity::Reaction))
+    {
         let Target::Surface(s) = probe.target else {
-            return Err(SetupError::NoReaction { probe: probe.name.clone() });
+            return Err(SetupError::NoReaction {
+                probe: probe.name.clone(),
+            });
         };
         if !plan.boundaries.iter().any(|b| b.surfaces.contains(&s)) {
-            return Err(SetupError::NoReaction { probe: probe.name.clone() });
+            return Err(SetupError::NoReaction {
+                probe: probe.name.clone(),
+            });
         }
     }
     Ok(())
@@ -417,5 +486,7 @@ fn follower(plan: &Plan, constraints: &Constraints) -> Follower {
         .filter(|b| is_absorbing(&b.kind))
         .flat_map(|b| b.surfaces.iter().map(|&s| &plan.mesh.surfaces[s].faces[..]))
         .collect();
-    Follower::new(&plan.mesh, &surfaces, |n| constraints.of(n).map_or(Mat3::IDENTITY, |c| c.free))
+    Follower::new(&plan.mesh, &surfaces, |n| {
+        constraints.of(n).map_or(Mat3::IDENTITY, |c| c.free)
+    })
 }

@@ -41,7 +41,9 @@ pub fn to_matrix(s: &Voigt) -> Mat3 {
 /// The stress of a symmetric matrix.
 #[inline]
 pub fn from_matrix(m: &Mat3) -> Voigt {
-    [m.x_axis.x, m.y_axis.y, m.z_axis.z, m.x_axis.y, m.y_axis.z, m.z_axis.x]
+    [
+        m.x_axis.x, m.y_axis.y, m.z_axis.z, m.x_axis.y, m.y_axis.z, m.z_axis.x,
+    ]
 }
 
 /// Engineering strain, the symmetric part of a displacement gradient.
@@ -80,7 +82,11 @@ pub fn spin_rotation(gradient: &Mat3) -> Mat3 {
     // With the half axial vector r = ½ axial(W), Q = I + 2/(1+r²) (R + R²), R = r×.
     let (x, y, z) = (gradient.x_axis, gradient.y_axis, gradient.z_axis);
     let r = 0.25 * Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x);
-    let rate = Mat3::from_cols(Vec3::new(0.0, r.z, -r.y), Vec3::new(-r.z, 0.0, r.x), Vec3::new(r.y, -r.x, 0.0));
+    let rate = Mat3::from_cols(
+        Vec3::new(0.0, r.z, -r.y),
+        Vec3::new(-r.z, 0.0, r.x),
+        Vec3::new(r.y, -r.x, 0.0),
+    );
     Mat3::IDENTITY + (rate + rate * rate) * (2.0 / (1.0 + r.length_squared()))
 }
 

@@ -10,10 +10,19 @@ use crate::{Fidelity, Plot, Report, Table};
 use moldwarp::plan::{BoundaryKind, Quantity};
 use moldwarp::{Plan, Simulation, Vec3};
 
-const SPRING: Bottom = Bottom::DashpotAndSpring { alpha: 2.5, virtual_thickness: 0.5 };
+const SPRING: Bottom = Bottom::DashpotAndSpring {
+    alpha: 2.5,
+    virtual_thickness: 0.5,
+};
 const DASHPOT: Bottom = Bottom::Dashpot { alpha: 2.5 };
 /// Greatest error allowed, by elements over the height.
-const LIMITS: [(usize, f64); 5] = [(10, 3.0e-2), (20, 1.5e-2), (40, 1.3e-2), (80, 0.8e-2), (160, 0.7e-2)];
+const LIMITS: [(usize, f64); 5] = [
+    (10, 3.0e-2),
+    (20, 1.5e-2),
+    (40, 1.3e-2),
+    (80, 0.8e-2),
+    (160, 0.7e-2),
+];
 
 /// Downward displacements (m) of bottom and top, and pressure at the bottom (Pa), over time.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +38,12 @@ pub fn plan(n: usize, bottom: Bottom, load: f64, end: f64) -> Plan {
     let mut plan = setup::column(setup::column_mesh(n), setup::papers_soil(), end);
     setup::bound(&mut plan, &["z-min"], boundary(bottom));
     setup::load(&mut plan, "z-max", Vec3::new(0.0, 0.0, -load));
-    setup::probe(&mut plan, "bottom", "z-min", &[Quantity::Displacement, Quantity::Stress]);
+    setup::probe(
+        &mut plan,
+        "bottom",
+        "z-min",
+        &[Quantity::Displacement, Quantity::Stress],
+    );
     setup::probe(&mut plan, "top", "z-max", &[Quantity::Displacement]);
     plan
 }
@@ -37,10 +51,14 @@ pub fn plan(n: usize, bottom: Bottom, load: f64, end: f64) -> Plan {
 fn boundary(bottom: Bottom) -> BoundaryKind {
     match bottom {
         Bottom::Rigid => setup::FIXED,
-        Bottom::Dashpot { alpha } => {
-            BoundaryKind::Absorbing { alpha: [alpha; 2], virtual_thickness: None }
-        }
-        Bottom::DashpotAndSpring { alpha, virtual_thickness } => BoundaryKind::Absorbing {
+        Bottom::Dashpot { alpha } => BoundaryKind::Absorbing {
+            alpha: [alpha; 2],
+            virtual_thickness: None,
+        },
+        Bottom::DashpotAndSpring {
+            alpha,
+            virtual_thickness,
+        } => BoundaryKind::Absorbing {
             alpha: [alpha; 2],
             virtual_thickness: Some([virtual_thickness; 2]),
         },
@@ -63,18 +81,32 @@ pub fn history(plan: Plan) -> (History, Balance) {
 }
 
 fn worst(time: &[f64], values: &[f64], exact: impl Fn(f64) -> f64) -> f64 {
-    time.iter().zip(values).map(|(&t, v)| (v - exact(t)).abs()).fold(0.0, f64::max)
+    time.iter()
+        .zip(values)
+        .map(|(&t, v)| (v - exact(t)).abs())
+        .fold(0.0, f64::max)
 }
 
 pub fn run(fidelity: Fidelity) -> Report {
     let mut report = Report {
-        table: Table::new(&["bottom", "elements", "error_bottom_%", "error_top_%", "numerical_%", "residual"]),
+        table: Table::new(&[
+            "bottom",
+            "elements",
+            "error_bottom_%",
+            "error_top_%",
+            "numerical_%",
+            "residual",
+        ]),
         ..Report::default()
     };
     let count = fidelity.pick(3, 5);
     for &(n, limit) in &LIMITS[..count] {
         let error = refine(&mut report, n, SPRING, fidelity);
-        report.check(format!("spring; {n} elements: error of the bottom's displacement over its peak"), error, limit);
+        report.check(
+            format!("spring; {n} elements: error of the bottom's displacement over its peak"),
+            error,
+            limit,
+        );
     }
     for (n, _) in LIMITS[..count].iter().filter(|l| l.0 <= 80) {
         refine(&mut report, *n, DASHPOT, fidelity);
@@ -109,9 +141,16 @@ fn refine(report: &mut Report, n: usize, bottom: Bottom, fidelity: Fidelity) -> 
         &format!("{:.3}", 100.0 * balance.numerical),
         &format!("{:.1e}", balance.residual),
     ]);
-    report.check(format!("{name}; {n} elements: residual of the ledger"), balance.residual, 1e-6);
+    report.check(
+        format!("{name}; {n} elements: residual of the ledger"),
+        balance.residual,
+        1e-6,
+    );
     if n == fidelity.pick(20, 80) {
-        report.plots.push((format!("absorbing-column-{name}"), draw(name, n, &h, bottom, end)));
+        report.plots.push((
+            format!("absorbing-column-{name}"),
+            draw(name, n, &h, bottom, end),
+        ));
     }
     error
 }
@@ -122,13 +161,43 @@ fn draw(name: &str, n: usize, h: &History, bottom: Bottom, end: f64) -> Plot {
     let title = format!("Suddenly loaded layer, bottom: {name}, {n} elements over the height");
     if bottom == Bottom::Rigid {
         let mut plot = Plot::new(&title, "time (s)", "pressure at the bottom (kPa)");
-        plot.line("moldwarp", h.time.iter().zip(&h.pressure).map(|(&t, p)| (t, p / 1e3)).collect());
-        plot.dashed("exact", instants.iter().map(|&t| (t, exact.bottom_pressure(t) / 1e3)).collect());
+        plot.line(
+            "moldwarp",
+            h.time
+                .iter()
+                .zip(&h.pressure)
+                .map(|(&t, p)| (t, p / 1e3))
+                .collect(),
+        );
+        plot.dashed(
+            "exact",
+            instants
+                .iter()
+                .map(|&t| (t, exact.bottom_pressure(t) / 1e3))
+                .collect(),
+        );
         return plot;
     }
-    let mut plot = Plot::new(&title, "time (s)", "downward displacement of the bottom (mm)");
-    plot.line("moldwarp", h.time.iter().zip(&h.bottom).map(|(&t, u)| (t, 1e3 * u)).collect());
-    plot.dashed("exact", instants.iter().map(|&t| (t, 1e3 * exact.bottom_displacement(t))).collect());
+    let mut plot = Plot::new(
+        &title,
+        "time (s)",
+        "downward displacement of the bottom (mm)",
+    );
+    plot.line(
+        "moldwarp",
+        h.time
+            .iter()
+            .zip(&h.bottom)
+            .map(|(&t, u)| (t, 1e3 * u))
+            .collect(),
+    );
+    plot.dashed(
+        "exact",
+        instants
+            .iter()
+            .map(|&t| (t, 1e3 * exact.bottom_displacement(t)))
+            .collect(),
+    );
     plot
 }
 
@@ -136,7 +205,8 @@ fn draw(name: &str, n: usize, h: &History, bottom: Bottom, end: f64) -> Plot {
 fn small_strain(report: &mut Report, fidelity: Fidelity) {
     for bottom in [SPRING, DASHPOT] {
         let (_, balance) = history(plan(fidelity.pick(20, 40), bottom, 1.0, 1.6));
-        let what = format!("{bottom:?}; 1 Pa: absolute numerical terms over the energy turned over");
+        let what =
+            format!("{bottom:?}; 1 Pa: absolute numerical terms over the energy turned over");
         report.check(what, balance.numerical, 1e-2);
     }
 }
@@ -154,5 +224,9 @@ fn long_run(report: &mut Report, fidelity: Fidelity) {
             length += dt;
         }
     }
-    report.check("6 s: mean bottom displacement of the last 4T from 5 mm (mm)", (1e3 * area / length - 5.0).abs(), 0.02);
+    report.check(
+        "6 s: mean bottom displacement of the last 4T from 5 mm (mm)",
+        (1e3 * area / length - 5.0).abs(),
+        0.02,
+    );
 }

@@ -10,10 +10,21 @@ use moldwarp::{Simulation, Vec3};
 
 pub fn run(fidelity: Fidelity) -> Report {
     let mut report = Report {
-        table: Table::new(&["elements", "strain", "drift_%", "period_error_%", "numerical_%", "residual"]),
+        table: Table::new(&[
+            "elements",
+            "strain",
+            "drift_%",
+            "period_error_%",
+            "numerical_%",
+            "residual",
+        ]),
         ..Report::default()
     };
-    let mut plot = Plot::new("Energy of the first mode", "periods", "kinetic and stored energy over the first");
+    let mut plot = Plot::new(
+        "Energy of the first mode",
+        "periods",
+        "kinetic and stored energy over the first",
+    );
     for n in fidelity.pick(vec![20], vec![10, 20, 40]) {
         for (strain, limit) in [(1e-4, 5e-3), (0.04, 0.05)] {
             let mode = Mode::run(n, strain);
@@ -26,11 +37,23 @@ pub fn run(fidelity: Fidelity) -> Report {
                 &format!("{:.1e}", mode.balance.residual),
             ]);
             if n == 20 {
-                report.check(format!("{n} elements; strain {strain}: drift of the energy over ten periods"), mode.drift, limit);
+                report.check(
+                    format!("{n} elements; strain {strain}: drift of the energy over ten periods"),
+                    mode.drift,
+                    limit,
+                );
             }
-            report.check(format!("{n} elements; strain {strain}: residual of the ledger"), mode.balance.residual, 1e-6);
+            report.check(
+                format!("{n} elements; strain {strain}: residual of the ledger"),
+                mode.balance.residual,
+                1e-6,
+            );
             if strain < 0.01 {
-                report.check(format!("{n} elements; strain {strain}: absolute numerical terms"), mode.balance.numerical, 1e-2);
+                report.check(
+                    format!("{n} elements; strain {strain}: absolute numerical terms"),
+                    mode.balance.numerical,
+                    1e-2,
+                );
             }
             plot.line(format!("{n} elements, strain {strain}"), mode.energy);
         }
@@ -66,10 +89,17 @@ impl Mode {
             drift = drift.max((whole - 1.0).abs());
             energy.push((s.time() / period, whole));
             let p = s.particles();
-            let top: f64 = (0..p.len()).map(|i| p.displacement[i].z * shape(p.position[i])).sum();
+            let top: f64 = (0..p.len())
+                .map(|i| p.displacement[i].z * shape(p.position[i]))
+                .sum();
             amplitude.push((s.time(), top));
         });
-        Mode { drift, period_error: zero_crossings(&amplitude) / period - 1.0, balance, energy }
+        Mode {
+            drift,
+            period_error: zero_crossings(&amplitude) / period - 1.0,
+            balance,
+            energy,
+        }
     }
 }
 

@@ -40,7 +40,13 @@ fn exact(t: f64, d: f64) -> f64 {
 
 pub fn run(fidelity: Fidelity) -> Report {
     let mut report = Report {
-        table: Table::new(&["elements", "error_%_of_amplitude", "period_error_%", "numerical_%", "residual"]),
+        table: Table::new(&[
+            "elements",
+            "error_%_of_amplitude",
+            "period_error_%",
+            "numerical_%",
+            "residual",
+        ]),
         ..Report::default()
     };
     let period = 4.0 / wave_speed();
@@ -51,7 +57,11 @@ pub fn run(fidelity: Fidelity) -> Report {
         let balance = setup::run(plan(n, 5.0 * period), |s| {
             times.push((s.time(), -setup::value(s, "top.displacement.z")));
         });
-        let error = times.iter().map(|&(t, u)| (u - exact(t, depth)).abs()).fold(0.0, f64::max) / (2.0 * STATIC);
+        let error = times
+            .iter()
+            .map(|&(t, u)| (u - exact(t, depth)).abs())
+            .fold(0.0, f64::max)
+            / (2.0 * STATIC);
         let measured = measured_period(&times);
         report.table.row(&[
             &n,
@@ -60,16 +70,52 @@ pub fn run(fidelity: Fidelity) -> Report {
             &format!("{:.4}", 100.0 * balance.numerical),
             &format!("{:.1e}", balance.residual),
         ]);
-        report.check(format!("{n} elements: error over twice the static settlement; five periods"), error, if n > 15 { 0.02 } else { 0.04 });
-        report.check(format!("{n} elements: error relative to the coarser mesh's"), error / last, 1.0);
-        report.check(format!("{n} elements: error of the period 4L/c"), (measured / period - 1.0).abs(), 0.005);
-        report.check(format!("{n} elements: residual of the ledger"), balance.residual, 1e-6);
-        report.check(format!("{n} elements: absolute numerical terms"), balance.numerical, 1e-2);
+        report.check(
+            format!("{n} elements: error over twice the static settlement; five periods"),
+            error,
+            if n > 15 { 0.02 } else { 0.04 },
+        );
+        report.check(
+            format!("{n} elements: error relative to the coarser mesh's"),
+            error / last,
+            1.0,
+        );
+        report.check(
+            format!("{n} elements: error of the period 4L/c"),
+            (measured / period - 1.0).abs(),
+            0.005,
+        );
+        report.check(
+            format!("{n} elements: residual of the ledger"),
+            balance.residual,
+            1e-6,
+        );
+        report.check(
+            format!("{n} elements: absolute numerical terms"),
+            balance.numerical,
+            1e-2,
+        );
         last = error;
         if n == fidelity.pick(20, 40) {
-            let mut plot = Plot::new("Column under sudden gravity", "time over 4L/c", "top's displacement over ρgL²/(2E)");
-            plot.line(format!("moldwarp, {n} elements"), times.iter().map(|&(t, u)| (t / period, u / STATIC)).collect());
-            plot.dashed("exact", times.iter().map(|&(t, _)| (t / period, exact(t, depth) / STATIC)).collect());
+            let mut plot = Plot::new(
+                "Column under sudden gravity",
+                "time over 4L/c",
+                "top's displacement over ρgL²/(2E)",
+            );
+            plot.line(
+                format!("moldwarp, {n} elements"),
+                times
+                    .iter()
+                    .map(|&(t, u)| (t / period, u / STATIC))
+                    .collect(),
+            );
+            plot.dashed(
+                "exact",
+                times
+                    .iter()
+                    .map(|&(t, _)| (t / period, exact(t, depth) / STATIC))
+                    .collect(),
+            );
             report.plots.push(("gravity-column".to_owned(), plot));
         }
     }
@@ -104,17 +150,31 @@ fn measured_period(points: &[(f64, f64)]) -> f64 {
 fn centre(points: &[(f64, f64)], top: usize) -> f64 {
     let level = 1.5 * STATIC;
     let crossing = |a: (f64, f64), b: (f64, f64)| a.0 + (b.0 - a.0) * (level - a.1) / (b.1 - a.1);
-    let before = (1..=top).rev().find(|&i| points[i - 1].1 < level).unwrap_or(1);
-    let after = (top..points.len() - 1).find(|&i| points[i + 1].1 < level).unwrap_or(points.len() - 2);
-    0.5 * (crossing(points[before - 1], points[before]) + crossing(points[after], points[after + 1]))
+    let before = (1..=top)
+        .rev()
+        .find(|&i| points[i - 1].1 < level)
+        .unwrap_or(1);
+    let after = (top..points.len() - 1)
+        .find(|&i| points[i + 1].1 < level)
+        .unwrap_or(points.len() - 2);
+    0.5 * (crossing(points[before - 1], points[before])
+        + crossing(points[after], points[after + 1]))
 }
 
 fn at_rest(report: &mut Report, fidelity: Fidelity) {
     let n = fidelity.pick(10, 40);
     let period = 4.0 / wave_speed();
     let mut plan = plan(n, 25.0 * period);
-    let stage = Stage { damping: Some(0.4), ..plan.stages[0].clone() };
-    let free = Stage { name: "free".to_owned(), until: Until::Steps(10), damping: None, initial_velocities: vec![] };
+    let stage = Stage {
+        damping: Some(0.4),
+        ..plan.stages[0].clone()
+    };
+    let free = Stage {
+        name: "free".to_owned(),
+        until: Until::Steps(10),
+        damping: None,
+        initial_velocities: vec![],
+    };
     plan.stages = vec![stage, free];
     let (mut worst, mut energies) = (0.0f64, None);
     setup::run(plan, |s| {
@@ -127,6 +187,14 @@ fn at_rest(report: &mut Report, fidelity: Fidelity) {
         }
     });
     let e = energies.expect("the last stage ends");
-    report.check(format!("damped; {n} elements: greatest error of a particle's σ_zz over ρgL"), worst / (DENSITY * G), 0.5 / n as f64);
-    report.check(format!("damped; {n} elements: kinetic energy over the stored"), e.kinetic / e.elastic, 1e-6);
+    report.check(
+        format!("damped; {n} elements: greatest error of a particle's σ_zz over ρgL"),
+        worst / (DENSITY * G),
+        0.5 / n as f64,
+    );
+    report.check(
+        format!("damped; {n} elements: kinetic energy over the stored"),
+        e.kinetic / e.elastic,
+        1e-6,
+    );
 }

@@ -28,7 +28,11 @@ pub fn run(fidelity: Fidelity) -> Report {
         ]),
         ..Report::default()
     };
-    let mut plot = Plot::new("First mode: error of the period", "elements over the height", "error (%)");
+    let mut plot = Plot::new(
+        "First mode: error of the period",
+        "elements over the height",
+        "error (%)",
+    );
     let mut errors = [Vec::new(), Vec::new()];
     for n in fidelity.pick(vec![5, 10], vec![5, 10, 20, 40]) {
         let [lumped, consistent] = lost_in_mapping(n);
@@ -43,9 +47,21 @@ pub fn run(fidelity: Fidelity) -> Report {
             &format!("{:.4}", 100.0 * runs[0].1),
             &format!("{:.4}", 100.0 * runs[1].1),
         ]);
-        report.check(format!("{n} elements: one lumped mapping against (kh)²/3; relative"), (lumped / (kh * kh / 3.0) - 1.0).abs(), 0.15);
-        report.check(format!("{n} elements: the consistent matrix loses; of the lumped"), consistent / lumped, 0.02);
-        report.check(format!("{n} elements: period's error; corrected over lumped"), (runs[1].1 / runs[0].1).abs(), 0.5);
+        report.check(
+            format!("{n} elements: one lumped mapping against (kh)²/3; relative"),
+            (lumped / (kh * kh / 3.0) - 1.0).abs(),
+            0.15,
+        );
+        report.check(
+            format!("{n} elements: the consistent matrix loses; of the lumped"),
+            consistent / lumped,
+            0.02,
+        );
+        report.check(
+            format!("{n} elements: period's error; corrected over lumped"),
+            (runs[1].1 / runs[0].1).abs(),
+            0.5,
+        );
         for (errors, run) in errors.iter_mut().zip(runs) {
             errors.push((n as f64, 100.0 * run.1));
         }
@@ -67,12 +83,19 @@ fn free_vibration(n: usize, mass: MassMatrix) -> (f64, f64) {
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     let mut simulation = Simulation::new(plan).unwrap_or_else(|e| panic!("{e}"));
     let shape = |x: Vec3| (std::f64::consts::FRAC_PI_2 * x.z).sin();
-    simulation.set_velocity(|x| Vec3::new(0.0, 0.0, 1e-5 * c * shape(x))).unwrap_or_else(|e| panic!("{e}"));
+    simulation
+        .set_velocity(|x| Vec3::new(0.0, 0.0, 1e-5 * c * shape(x)))
+        .unwrap_or_else(|e| panic!("{e}"));
     let first = simulation.energies().kinetic;
     let (mut signal, mut last) = (Vec::new(), 0.0);
     setup::run_from(simulation, |s| {
         let p = s.particles();
-        signal.push((s.time(), (0..p.len()).map(|i| p.displacement[i].z * shape(p.position[i])).sum()));
+        signal.push((
+            s.time(),
+            (0..p.len())
+                .map(|i| p.displacement[i].z * shape(p.position[i]))
+                .sum(),
+        ));
         last = s.energies().kinetic + s.energies().elastic;
     });
     (1.0 - last / first, zero_crossings(&signal) / period - 1.0)
@@ -82,11 +105,18 @@ fn free_vibration(n: usize, mass: MassMatrix) -> (f64, f64) {
 /// back to the particles, with the lumped and with the consistent matrix. In one dimension: nodes
 /// over the height, four particles per element at Gauss points.
 fn lost_in_mapping(n: usize) -> [f64; 2] {
-    let gauss = [(0.069_431_844_202_973_71, 0.173_927_422_568_726_9), (0.330_009_478_207_571_87, 0.326_072_577_431_273_07)];
-    let points: Vec<(f64, f64)> = gauss.iter().flat_map(|&(x, w)| [(x, w), (1.0 - x, w)]).collect();
+    let gauss = [
+        (0.069_431_844_202_973_71, 0.173_927_422_568_726_9),
+        (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    ];
+    let points: Vec<(f64, f64)> = gauss
+        .iter()
+        .flat_map(|&(x, w)| [(x, w), (1.0 - x, w)])
+        .collect();
     let shape = |z: f64| (std::f64::consts::FRAC_PI_2 * z).sin();
     let h = 1.0 / n as f64;
-    let (mut diagonal, mut upper, mut momentum) = (vec![0.0; n + 1], vec![0.0; n], vec![0.0; n + 1]);
+    let (mut diagonal, mut upper, mut momentum) =
+        (vec![0.0; n + 1], vec![0.0; n], vec![0.0; n + 1]);
     let each = |visit: &mut dyn FnMut(usize, f64, f64, f64)| {
         for e in 0..n {
             for &(x, w) in &points {
@@ -107,7 +137,12 @@ fn lost_in_mapping(n: usize) -> [f64; 2] {
     let lumped: Vec<f64> = (0..=n)
         .map(|i| {
             let neighbours = [i.checked_sub(1), (i < n).then_some(i)];
-            let mass = diagonal[i] + neighbours.into_iter().flatten().map(|k| upper[k]).sum::<f64>();
+            let mass = diagonal[i]
+                + neighbours
+                    .into_iter()
+                    .flatten()
+                    .map(|k| upper[k])
+                    .sum::<f64>();
             momentum[i] / mass
         })
         .collect();

@@ -28,15 +28,31 @@ pub const ALL: [Case; 8] = [
         title: "A column under suddenly applied gravity",
         run: gravity_column::run,
     },
-    Case { name: "first-mode", title: "Energy of the first elastic mode", run: first_mode::run },
-    Case { name: "oedometer", title: "Compression to 40 % strain", run: oedometer::run },
+    Case {
+        name: "first-mode",
+        title: "Energy of the first elastic mode",
+        run: first_mode::run,
+    },
+    Case {
+        name: "oedometer",
+        title: "Compression to 40 % strain",
+        run: oedometer::run,
+    },
     Case {
         name: "mass-matrix",
         title: "Lumped against consistent mass on the first mode",
         run: mass_matrix::run,
     },
-    Case { name: "rotation", title: "A body that spins freely", run: rotation::run },
-    Case { name: "shear-wave", title: "A shear wave against a dashpot", run: shear_wave::run },
+    Case {
+        name: "rotation",
+        title: "A body that spins freely",
+        run: rotation::run,
+    },
+    Case {
+        name: "shear-wave",
+        title: "A shear wave against a dashpot",
+        run: shear_wave::run,
+    },
 ];
 
 /// The case of this name.

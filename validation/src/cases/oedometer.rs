@@ -14,10 +14,21 @@ const LOAD: f64 = 0.5 * E;
 
 pub fn run(fidelity: Fidelity) -> Report {
     let mut report = Report {
-        table: Table::new(&["elements", "height_m", "exact_m", "error_%", "greatest_stress_error_%", "mass_over_height_error_%"]),
+        table: Table::new(&[
+            "elements",
+            "height_m",
+            "exact_m",
+            "error_%",
+            "greatest_stress_error_%",
+            "mass_over_height_error_%",
+        ]),
         ..Report::default()
     };
-    let mut plot = Plot::new("Oedometer to 40 % strain", "load over E_c", "height over the first");
+    let mut plot = Plot::new(
+        "Oedometer to 40 % strain",
+        "load over E_c",
+        "height over the first",
+    );
     for n in fidelity.pick(vec![10], vec![10, 20, 40]) {
         let material = setup::elastic(E, 0.0, 1800.0);
         let c = (E / material.density).sqrt();
@@ -39,7 +50,11 @@ pub fn run(fidelity: Fidelity) -> Report {
             curve.push(((s.time() / ramp).min(1.0) * LOAD / E, height));
             if s.finished() {
                 let p = s.particles();
-                stress_error = p.stress.iter().map(|t| (t[2] + LOAD).abs() / LOAD).fold(0.0, f64::max);
+                stress_error = p
+                    .stress
+                    .iter()
+                    .map(|t| (t[2] + LOAD).abs() / LOAD)
+                    .fold(0.0, f64::max);
             }
         });
         let exact = (-LOAD / E).exp();
@@ -53,10 +68,20 @@ pub fn run(fidelity: Fidelity) -> Report {
             &format!("{:.2}", 100.0 * volume),
             &format!("{:.3}", 100.0 * error),
         ]);
-        report.check(format!("{n} elements: error of the final height"), error.abs(), 0.01);
+        report.check(
+            format!("{n} elements: error of the final height"),
+            error.abs(),
+            0.01,
+        );
         plot.line(format!("moldwarp, {n} elements"), curve);
     }
-    plot.dashed("exact, exp(−p/E_c)", (0..=50).map(|i| 0.01 * f64::from(i)).map(|p| (p, (-p).exp())).collect());
+    plot.dashed(
+        "exact, exp(−p/E_c)",
+        (0..=50)
+            .map(|i| 0.01 * f64::from(i))
+            .map(|p| (p, (-p).exp()))
+            .collect(),
+    );
     report.plots.push(("oedometer".to_owned(), plot));
     report
 }

@@ -18,28 +18,50 @@ const SPEED: f64 = 10.0;
 
 /// A cube of 1 m side, `n` elements along it, about the origin of a mesh three times as wide.
 pub fn plan(n: usize, end: f64) -> Plan {
-    let mesh = box_mesh(Vec3::new(2.0 * ROOM, 2.0 * ROOM, 2.0), [3 * n, 3 * n, 2 * n])
-        .expect("a box is a good mesh");
+    let mesh = box_mesh(
+        Vec3::new(2.0 * ROOM, 2.0 * ROOM, 2.0),
+        [3 * n, 3 * n, 2 * n],
+    )
+    .expect("a box is a good mesh");
     let density = 1000.0;
-    let mut plan = setup::free_body(mesh, setup::elastic(density * SPEED * SPEED, 0.2, density), end);
+    let mut plan = setup::free_body(
+        mesh,
+        setup::elastic(density * SPEED * SPEED, 0.2, density),
+        end,
+    );
     let centre = Vec3::new(ROOM, ROOM, 1.0);
     let half = Vec3::splat(0.5);
-    plan.bodies[0].place = Place::Region(Region::Box { min: centre - half, max: centre + half });
+    plan.bodies[0].place = Place::Region(Region::Box {
+        min: centre - half,
+        max: centre + half,
+    });
     plan
 }
 
 pub fn run(fidelity: Fidelity) -> Report {
     let mut report = Report {
-        table: Table::new(&["elements", "angular_momentum_change_%", "momentum_over_scale", "energy_change_%", "residual"]),
+        table: Table::new(&[
+            "elements",
+            "angular_momentum_change_%",
+            "momentum_over_scale",
+            "energy_change_%",
+            "residual",
+        ]),
         ..Report::default()
     };
-    let mut plot = Plot::new("A freely spinning cube", "turns", "angular momentum over the first");
+    let mut plot = Plot::new(
+        "A freely spinning cube",
+        "turns",
+        "angular momentum over the first",
+    );
     let mut last = f64::INFINITY;
     for n in fidelity.pick(vec![3, 6], vec![4, 8, 12]) {
         let turn = 2.0 * std::f64::consts::PI / SPIN.z;
         let centre = Vec3::new(ROOM, ROOM, 1.0);
         let mut simulation = Simulation::new(plan(n, turn)).unwrap_or_else(|e| panic!("{e}"));
-        simulation.set_velocity(|x| SPIN.cross(x - centre)).unwrap_or_else(|e| panic!("{e}"));
+        simulation
+            .set_velocity(|x| SPIN.cross(x - centre))
+            .unwrap_or_else(|e| panic!("{e}"));
         let first = simulation.particles().angular_momentum().z;
         let scale = simulation.particles().total_mass() * 0.5 * SPIN.z;
         let (mut curve, mut momentum, mut end) = (Vec::new(), 0.0f64, 0.0);
@@ -57,11 +79,27 @@ pub fn run(fidelity: Fidelity) -> Report {
             &format!("{:.1e}", balance.residual),
         ]);
         if n > 3 {
-            report.check(format!("{n} elements: change of angular momentum in a turn"), change, 5e-3);
+            report.check(
+                format!("{n} elements: change of angular momentum in a turn"),
+                change,
+                5e-3,
+            );
         }
-        report.check(format!("{n} elements: change relative to the coarser mesh's"), change / last, 1.0);
-        report.check(format!("{n} elements: momentum over m ω b/2"), momentum, 1e-12);
-        report.check(format!("{n} elements: residual of the ledger"), balance.residual, 1e-6);
+        report.check(
+            format!("{n} elements: change relative to the coarser mesh's"),
+            change / last,
+            1.0,
+        );
+        report.check(
+            format!("{n} elements: momentum over m ω b/2"),
+            momentum,
+            1e-12,
+        );
+        report.check(
+            format!("{n} elements: residual of the ledger"),
+            balance.residual,
+            1e-6,
+        );
         last = change;
         plot.line(format!("{n} elements along a side"), curve);
     }

@@ -31,7 +31,10 @@ pub fn run(fidelity: Fidelity) -> Report {
     );
     for alpha in [1.0f64, 1.75, 2.5] {
         for virtual_thickness in [0.1, 0.5, 5.0] {
-            let bottom = Bottom::DashpotAndSpring { alpha, virtual_thickness };
+            let bottom = Bottom::DashpotAndSpring {
+                alpha,
+                virtual_thickness,
+            };
             let column = Column::of_the_paper(bottom);
             let exact = column.solve(end);
             let (h, _) = history(plan(n, bottom, 1e3, end));
@@ -58,13 +61,25 @@ pub fn run(fidelity: Fidelity) -> Report {
                 &format!("{:.1}", 100.0 * ((alpha - 1.0) / (alpha + 1.0)).powi(2)),
                 &format!("{:.3}", 1e3 * peak),
                 &format!("{:.3}", 1e3 * exact.bottom_peak(end)),
-                &format!("{:.3}", 1e3 * column.load * virtual_thickness / column.modulus),
+                &format!(
+                    "{:.3}",
+                    1e3 * column.load * virtual_thickness / column.modulus
+                ),
                 &format!("{:.3}", 1e3 * range),
                 &format!("{:.2}", 100.0 * error),
             ]);
-            report.check(format!("alpha {alpha}; delta {virtual_thickness} m: error over p L/E_c = 10 mm"), error, fidelity.pick(0.02, 0.01));
+            report.check(
+                format!("alpha {alpha}; delta {virtual_thickness} m: error over p L/E_c = 10 mm"),
+                error,
+                fidelity.pick(0.02, 0.01),
+            );
             if virtual_thickness < 1.0 {
-                let points = h.time.iter().zip(&h.bottom).map(|(&t, u)| (t, 1e3 * u)).collect();
+                let points = h
+                    .time
+                    .iter()
+                    .zip(&h.bottom)
+                    .map(|(&t, u)| (t, 1e3 * u))
+                    .collect();
                 plot.line(format!("α = {alpha}, δ = {virtual_thickness} m"), points);
             }
         }

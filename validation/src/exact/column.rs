@@ -47,7 +47,9 @@ impl Wave {
         let at = |w: &Wave, i: usize| w.decaying.get(i).copied().unwrap_or(0.0);
         Wave {
             constant: a * self.constant + b * other.constant,
-            decaying: (0..count).map(|i| a * at(self, i) + b * at(other, i)).collect(),
+            decaying: (0..count)
+                .map(|i| a * at(self, i) + b * at(other, i))
+                .collect(),
         }
     }
 }
@@ -66,7 +68,13 @@ pub struct ColumnSolution {
 impl Column {
     /// The paper's layer: 1 m, 100 kPa, ν = 0, 18 kN/m³, 1 kPa.
     pub fn of_the_paper(bottom: Bottom) -> Column {
-        Column { load: 1e3, thickness: 1.0, modulus: 1e5, density: 18e3 / 9.81, bottom }
+        Column {
+            load: 1e3,
+            thickness: 1.0,
+            modulus: 1e5,
+            density: 18e3 / 9.81,
+            bottom,
+        }
     }
 
     /// T = L/c, s.
@@ -80,18 +88,26 @@ impl Column {
         let (alpha, k) = match self.bottom {
             Bottom::Rigid => (f64::INFINITY, 0.0),
             Bottom::Dashpot { alpha } => (alpha, 0.0),
-            Bottom::DashpotAndSpring { alpha, virtual_thickness } => {
-                (alpha, self.modulus / virtual_thickness)
-            }
+            Bottom::DashpotAndSpring {
+                alpha,
+                virtual_thickness,
+            } => (alpha, self.modulus / virtual_thickness),
         };
         let travel = self.travel_time();
         let lambda = k / (z * (1.0 + alpha));
-        let load = Wave { constant: self.load, decaying: vec![] };
+        let load = Wave {
+            constant: self.load,
+            decaying: vec![],
+        };
         let mut intervals: Vec<(Wave, Wave, Wave)> = Vec::new();
         let mut f = load.clone();
         let mut start = 0.0;
         while (2 * intervals.len() + 1) as f64 * travel <= end {
-            let u = if alpha.is_infinite() { Wave::default() } else { bottom(&f, start, lambda, z, alpha) };
+            let u = if alpha.is_infinite() {
+                Wave::default()
+            } else {
+                bottom(&f, start, lambda, z, alpha)
+            };
             let g = if alpha.is_infinite() {
                 f.clone()
             } else {
@@ -102,7 +118,12 @@ impl Column {
             intervals.push((u, f, g));
             f = next;
         }
-        ColumnSolution { column: self, lambda, intervals, travel }
+        ColumnSolution {
+            column: self,
+            lambda,
+            intervals,
+            travel,
+        }
     }
 }
 
@@ -112,15 +133,29 @@ fn bottom(f: &Wave, start: f64, lambda: f64, z: f64, alpha: f64) -> Wave {
     let mut decaying = vec![start];
     if lambda == 0.0 {
         // e^{−λτ} = 1: everything is a polynomial.
-        let whole: Vec<f64> = std::iter::once(f.constant + f.decaying.first().copied().unwrap_or(0.0))
-            .chain(f.decaying.iter().skip(1).copied())
-            .collect();
-        decaying.extend(whole.iter().enumerate().map(|(i, c)| rate * c / (i + 1) as f64));
-        return Wave { constant: 0.0, decaying };
+        let whole: Vec<f64> =
+            std::iter::once(f.constant + f.decaying.first().copied().unwrap_or(0.0))
+                .chain(f.decaying.iter().skip(1).copied())
+                .collect();
+        decaying.extend(
+            whole
+                .iter()
+                .enumerate()
+                .map(|(i, c)| rate * c / (i + 1) as f64),
+        );
+        return Wave {
+            constant: 0.0,
+            decaying,
+        };
     }
     let constant = rate * f.constant / lambda;
     decaying[0] -= constant;
-    decaying.extend(f.decaying.iter().enumerate().map(|(i, c)| rate * c / (i + 1) as f64));
+    decaying.extend(
+        f.decaying
+            .iter()
+            .enumerate()
+            .map(|(i, c)| rate * c / (i + 1) as f64),
+    );
     Wave { constant, decaying }
 }
 
@@ -129,24 +164,32 @@ impl ColumnSolution {
         if t < self.travel {
             return None;
         }
-        let number = (((t / self.travel - 1.0) / 2.0).floor() as usize).min(self.intervals.len() - 1);
-        Some((&self.intervals[number], t - (2 * number + 1) as f64 * self.travel))
+        let number =
+            (((t / self.travel - 1.0) / 2.0).floor() as usize).min(self.intervals.len() - 1);
+        Some((
+            &self.intervals[number],
+            t - (2 * number + 1) as f64 * self.travel,
+        ))
     }
 
     /// Downward displacement of the bottom, m.
     pub fn bottom_displacement(&self, t: f64) -> f64 {
-        self.interval(t).map_or(0.0, |((u, _, _), tau)| u.value(self.lambda, tau))
+        self.interval(t)
+            .map_or(0.0, |((u, _, _), tau)| u.value(self.lambda, tau))
     }
 
     /// Pressure at the bottom, Pa.
     pub fn bottom_pressure(&self, t: f64) -> f64 {
-        self.interval(t)
-            .map_or(0.0, |((_, f, g), tau)| f.value(self.lambda, tau) + g.value(self.lambda, tau))
+        self.interval(t).map_or(0.0, |((_, f, g), tau)| {
+            f.value(self.lambda, tau) + g.value(self.lambda, tau)
+        })
     }
 
     /// Greatest downward displacement of the bottom up to `end`, m.
     pub fn bottom_peak(&self, end: f64) -> f64 {
-        (0..=20_000).map(|i| self.bottom_displacement(end * f64::from(i) / 20_000.0)).fold(0.0, f64::max)
+        (0..=20_000)
+            .map(|i| self.bottom_displacement(end * f64::from(i) / 20_000.0))
+            .fold(0.0, f64::max)
     }
 
     /// Downward displacement of the top, m: Z u̇ = p₀ − 2 g(t − T), integrated by Simpson's rule
@@ -159,8 +202,18 @@ impl ColumnSolution {
             let length = (t - arrival).min(2.0 * self.travel);
             if length > 0.0 {
                 let h = length / 200.0;
-                let weight = |i: i32| if i == 0 || i == 200 { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-                up += (0..=200).map(|i| weight(i) * g.value(self.lambda, h * f64::from(i))).sum::<f64>() * h / 3.0;
+                let weight = |i: i32| {
+                    if i == 0 || i == 200 {
+                        1.0
+                    } else {
+                        f64::from(2 + 2 * (i % 2))
+                    }
+                };
+                up += (0..=200)
+                    .map(|i| weight(i) * g.value(self.lambda, h * f64::from(i)))
+                    .sum::<f64>()
+                    * h
+                    / 3.0;
             }
         }
         (self.column.load * t - 2.0 * up) / z
@@ -174,7 +227,10 @@ mod tests {
     /// The values that follow by hand from the characteristics for α = 2.5, δ = 0.5 m.
     #[test]
     fn the_papers_column_has_the_known_fronts() {
-        let bottom = Bottom::DashpotAndSpring { alpha: 2.5, virtual_thickness: 0.5 };
+        let bottom = Bottom::DashpotAndSpring {
+            alpha: 2.5,
+            virtual_thickness: 0.5,
+        };
         let column = Column::of_the_paper(bottom);
         let travel = column.travel_time();
         assert!((travel - 0.135457).abs() < 1e-6);
@@ -189,8 +245,14 @@ mod tests {
         ];
         for (n, before, after, u) in fronts {
             let t = n * travel;
-            assert!((exact.bottom_pressure(t * (1.0 - 1e-12)) - before).abs() < 0.006, "{n}");
-            assert!((exact.bottom_pressure(t * (1.0 + 1e-12)) - after).abs() < 0.006, "{n}");
+            assert!(
+                (exact.bottom_pressure(t * (1.0 - 1e-12)) - before).abs() < 0.006,
+                "{n}"
+            );
+            assert!(
+                (exact.bottom_pressure(t * (1.0 + 1e-12)) - after).abs() < 0.006,
+                "{n}"
+            );
             assert!((1e3 * exact.bottom_displacement(t) - u).abs() < 6e-6, "{n}");
         }
     }

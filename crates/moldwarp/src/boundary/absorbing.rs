@@ -39,11 +39,26 @@ impl Absorbing {
         boundaries: &[Boundary],
         material: impl Fn(Face) -> Option<&'a NamedMaterial>,
     ) -> Absorbing {
-        let mut absorbing = Absorbing { nodes: Vec::new(), of_node: vec![NONE; mesh.nodes.len()] };
+        let mut absorbing = Absorbing {
+            nodes: Vec::new(),
+            of_node: vec![NONE; mesh.nodes.len()],
+        };
         for boundary in boundaries {
-            let BoundaryKind::Absorbing { alpha, virtual_thickness } = boundary.kind else { continue };
-            for &face in boundary.surfaces.iter().flat_map(|&s| &mesh.surfaces[s].faces) {
-                let Some(material) = material(face) else { continue };
+            let BoundaryKind::Absorbing {
+                alpha,
+                virtual_thickness,
+            } = boundary.kind
+            else {
+                continue;
+            };
+            for &face in boundary
+                .surfaces
+                .iter()
+                .flat_map(|&s| &mesh.surfaces[s].faces)
+            {
+                let Some(material) = material(face) else {
+                    continue;
+                };
                 let area = mesh.face_area(face);
                 let (dashpot, spring) = face_matrices(area, alpha, virtual_thickness, material);
                 for node in mesh.face_nodes(face) {
@@ -67,7 +82,12 @@ impl Absorbing {
         if *index == NONE {
             *index = self.nodes.len() as u32;
             let (dashpot, spring) = (Mat3::ZERO, Mat3::ZERO);
-            self.nodes.push(AbsorbingNode { node, dashpot, spring, displacement: Vec3::ZERO });
+            self.nodes.push(AbsorbingNode {
+                node,
+                dashpot,
+                spring,
+                displacement: Vec3::ZERO,
+            });
         }
         &mut self.nodes[*index as usize]
     }
@@ -80,7 +100,11 @@ fn face_matrices(
     material: &NamedMaterial,
 ) -> (Mat3, Mat3) {
     let elastic = material.model.elasticity();
-    let (e_c, g, rho) = (elastic.constrained_modulus(), elastic.shear_modulus(), material.density);
+    let (e_c, g, rho) = (
+        elastic.constrained_modulus(),
+        elastic.shear_modulus(),
+        material.density,
+    );
     let size = area.length();
     let n = area / size;
     let normal = Mat3::from_cols(n * n.x, n * n.y, n * n.z) * size;

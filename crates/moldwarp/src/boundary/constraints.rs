@@ -28,8 +28,16 @@ pub struct Constraint {
 
 impl Constraint {
     fn velocity(&self, functions: &[f64]) -> Vec3 {
-        let speed = |held: &Held| held.speed.iter().map(|&(v, f)| v * functions[f]).sum::<f64>();
-        self.held.iter().map(|held| held.direction * speed(held)).sum()
+        let speed = |held: &Held| {
+            held.speed
+                .iter()
+                .map(|&(v, f)| v * functions[f])
+                .sum::<f64>()
+        };
+        self.held
+            .iter()
+            .map(|held| held.direction * speed(held))
+            .sum()
     }
 }
 
@@ -63,7 +71,11 @@ impl Constraints {
                 }
                 BoundaryKind::Roller | BoundaryKind::Absorbing { .. } => continue,
             };
-            axes.extend(surface_nodes(mesh, &boundary.surfaces).into_iter().map(|n| (n, components)));
+            axes.extend(
+                surface_nodes(mesh, &boundary.surfaces)
+                    .into_iter()
+                    .map(|n| (n, components)),
+            );
         }
         let mut constraints = Constraints {
             of_node: vec![NONE; mesh.nodes.len()],
@@ -81,7 +93,9 @@ impl Constraints {
             }
         }
         for (node, normals) in roller_normals(mesh, boundaries) {
-            normals.into_iter().for_each(|n| constraints.hold(node, n, 0.0, 0));
+            normals
+                .into_iter()
+                .for_each(|n| constraints.hold(node, n, 0.0, 0));
         }
         constraints
     }
@@ -127,7 +141,11 @@ impl Constraints {
     fn hold(&mut self, node: u32, direction: Vec3, speed: f64, function: usize) {
         if self.of_node[node as usize] == NONE {
             self.of_node[node as usize] = self.all.len() as u32;
-            self.all.push(Constraint { node, free: Mat3::IDENTITY, held: Vec::new() });
+            self.all.push(Constraint {
+                node,
+                free: Mat3::IDENTITY,
+                held: Vec::new(),
+            });
         }
         let constraint = &mut self.all[self.of_node[node as usize] as usize];
         let rest = constraint.free * direction;
@@ -144,7 +162,10 @@ impl Constraints {
         speeds.retain(|&(v, _)| v != 0.0);
         let unit = rest / length;
         constraint.free -= Mat3::from_cols(unit * unit.x, unit * unit.y, unit * unit.z);
-        constraint.held.push(Held { direction: unit, speed: speeds });
+        constraint.held.push(Held {
+            direction: unit,
+            speed: speeds,
+        });
         if constraint.held.len() == 3 {
             constraint.free = Mat3::ZERO;
         }
@@ -163,7 +184,9 @@ pub fn surface_nodes(mesh: &Mesh, surfaces: &[usize]) -> Vec<u32> {
 /// For each node on a roller, the unit normals to hold: faces whose normals differ by less than
 /// 30° are one smooth surface with their area-weighted mean normal.
 fn roller_normals(mesh: &Mesh, boundaries: &[Boundary]) -> Vec<(u32, Vec<Vec3>)> {
-    let rollers = boundaries.iter().filter(|b| matches!(b.kind, BoundaryKind::Roller));
+    let rollers = boundaries
+        .iter()
+        .filter(|b| matches!(b.kind, BoundaryKind::Roller));
     let mut areas: Vec<(u32, Vec3)> = rollers
         .flat_map(|b| &b.surfaces)
         .flat_map(|&s| &mesh.surfaces[s].faces)
@@ -175,7 +198,8 @@ fn roller_normals(mesh: &Mesh, boundaries: &[Boundary]) -> Vec<(u32, Vec<Vec3>)>
         .map(|faces| {
             let mut sums: Vec<Vec3> = Vec::new();
             for &(_, area) in faces {
-                let alike = |sum: &&mut Vec3| sum.normalize().dot(area.normalize()).abs() > SMOOTH_COSINE;
+                let alike =
+                    |sum: &&mut Vec3| sum.normalize().dot(area.normalize()).abs() > SMOOTH_COSINE;
                 match sums.iter_mut().find(alike) {
                     Some(sum) => *sum += area * sum.dot(area).signum(),
                     None => sums.push(area),
@@ -193,7 +217,11 @@ mod tests {
 
     fn boundary(mesh: &Mesh, names: &[&str], kind: BoundaryKind) -> Boundary {
         let surfaces = names.iter().map(|n| mesh.surface(n).unwrap()).collect();
-        Boundary { name: names[0].to_owned(), surfaces, kind }
+        Boundary {
+            name: names[0].to_owned(),
+            surfaces,
+            kind,
+        }
     }
 
     #[test]
@@ -202,12 +230,19 @@ mod tests {
         let rollers = boundary(&mesh, &["x-min", "y-min", "z-min"], BoundaryKind::Roller);
         let constraints = Constraints::new(&mesh, &[rollers]);
         let free = |x: Vec3| {
-            let node = mesh.nodes.iter().position(|n| (*n - x).length() < 1e-12).unwrap();
+            let node = mesh
+                .nodes
+                .iter()
+                .position(|n| (*n - x).length() < 1e-12)
+                .unwrap();
             constraints.of(node as u32).map(|c| c.free * Vec3::ONE)
         };
         assert_eq!(free(Vec3::ZERO), Some(Vec3::ZERO));
         assert_eq!(free(Vec3::new(0.5, 0.0, 0.0)), Some(Vec3::X));
-        assert_eq!(free(Vec3::new(0.5, 0.5, 0.0)), Some(Vec3::new(1.0, 1.0, 0.0)));
+        assert_eq!(
+            free(Vec3::new(0.5, 0.5, 0.0)),
+            Some(Vec3::new(1.0, 1.0, 0.0))
+        );
         assert_eq!(free(Vec3::splat(0.5)), None);
     }
 
@@ -216,11 +251,19 @@ mod tests {
         let mesh = box_mesh(Vec3::ONE, [1, 1, 1]).unwrap();
         let velocity = [None, None, Some(-2.0)];
         let function = Function::Ramp { duration: 4.0 };
-        let plate = boundary(&mesh, &["z-max"], BoundaryKind::Prescribed { velocity, function });
+        let plate = boundary(
+            &mesh,
+            &["z-max"],
+            BoundaryKind::Prescribed { velocity, function },
+        );
         let side = boundary(&mesh, &["x-min"], BoundaryKind::Roller);
         let mut constraints = Constraints::new(&mesh, &[side, plate]);
         constraints.set_time(1.0, true);
-        let node = mesh.nodes.iter().position(|x| x.x == 0.0 && x.z == 1.0).unwrap() as u32;
+        let node = mesh
+            .nodes
+            .iter()
+            .position(|x| x.x == 0.0 && x.z == 1.0)
+            .unwrap() as u32;
         let edge = constraints.of(node).unwrap();
         assert_eq!(constraints.prescribed(edge), Vec3::new(0.0, 0.0, -0.5));
         assert_eq!(edge.free * Vec3::ONE, Vec3::Y);

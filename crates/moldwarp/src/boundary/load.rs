@@ -48,8 +48,11 @@ pub fn load_points(
 ) -> Result<Vec<LoadPoint>, LoadError> {
     let mut points = Vec::new();
     for (number, load) in loads.iter().enumerate() {
-        let faces: Vec<Face> =
-            load.surfaces.iter().flat_map(|&s| mesh.surfaces[s].faces.iter().copied()).collect();
+        let faces: Vec<Face> = load
+            .surfaces
+            .iter()
+            .flat_map(|&s| mesh.surfaces[s].faces.iter().copied())
+            .collect();
         let total: f64 = faces.iter().map(|&f| mesh.face_area(f).length()).sum();
         let mut missing = 0;
         for &face in &faces {
@@ -68,11 +71,20 @@ pub fn load_points(
                 let x: Vec3 = (0..3).map(|i| corners[i] * weights[i]).sum();
                 let particle = nearest(x, side.element, load.body, particles, offsets);
                 let offset = x - particles.position[particle as usize];
-                points.push(LoadPoint { load: number as u32, particle, offset, force });
+                points.push(LoadPoint {
+                    load: number as u32,
+                    particle,
+                    offset,
+                    force,
+                });
             }
         }
         if missing > 0 {
-            return Err(LoadError { load: load.name.clone(), count: missing, total: faces.len() });
+            return Err(LoadError {
+                load: load.name.clone(),
+                count: missing,
+                total: faces.len(),
+            });
         }
     }
     Ok(points)
@@ -83,9 +95,18 @@ fn in_element(e: u32, offsets: &[u32]) -> std::ops::Range<usize> {
 }
 
 /// The face seen from the element that holds particles of the body.
-fn side_of_body(mesh: &Mesh, face: Face, body: usize, particles: &Particles, offsets: &[u32]) -> Option<Face> {
-    let holds = |f: &Face| in_element(f.element, offsets).any(|p| usize::from(particles.body[p]) == body);
-    Some(face).filter(holds).or_else(|| mesh.across(face).filter(holds))
+fn side_of_body(
+    mesh: &Mesh,
+    face: Face,
+    body: usize,
+    particles: &Particles,
+    offsets: &[u32],
+) -> Option<Face> {
+    let holds =
+        |f: &Face| in_element(f.element, offsets).any(|p| usize::from(particles.body[p]) == body);
+    Some(face)
+        .filter(holds)
+        .or_else(|| mesh.across(face).filter(holds))
 }
 
 fn nearest(x: Vec3, e: u32, body: usize, particles: &Particles, offsets: &[u32]) -> u32 {

@@ -49,12 +49,22 @@ mod tests {
 
     #[test]
     fn moduli_and_stresses_are_hookes() {
-        let soil = LinearElastic { young_modulus: 5e6, poisson_ratio: 0.3 };
+        let soil = LinearElastic {
+            young_modulus: 5e6,
+            poisson_ratio: 0.3,
+        };
         assert!((soil.shear_modulus() - 5e6 / 2.6).abs() < 1e-6);
-        assert!((soil.constrained_modulus() - soil.lame() - 2.0 * soil.shear_modulus()).abs() < 1e-6);
+        assert!(
+            (soil.constrained_modulus() - soil.lame() - 2.0 * soil.shear_modulus()).abs() < 1e-6
+        );
         // Uniaxial stress: ε = (1, −ν, −ν) σ/E.
         let stress = soil.update(&[0.0; 6], &[1e-3, -0.3e-3, -0.3e-3, 0.0, 0.0, 2e-3]);
         let expected = [5e3, 0.0, 0.0, 0.0, 0.0, 2e-3 * soil.shear_modulus()];
-        assert!(stress.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9));
+        assert!(
+            stress
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-9)
+        );
     }
 }

@@ -17,7 +17,10 @@ use std::ops::Range;
 /// What one probe looks at.
 #[derive(Clone, Debug)]
 enum Place {
-    Nodes { nodes: Vec<SurfaceNode>, elements: Vec<(u32, f64)> },
+    Nodes {
+        nodes: Vec<SurfaceNode>,
+        elements: Vec<(u32, f64)>,
+    },
     /// Places in the particle arrays with weights that sum to 1.
     Particles(Vec<(u32, f64)>),
     Body(u16),
@@ -48,19 +51,24 @@ impl Probes {
             Target::Surface(s) => Place::Particles(next_to(&plan.mesh, s, offsets)),
             Target::Point(x) => {
                 let distance = |p: &usize| (particles.position[*p] - x).length_squared();
-                let nearest = (0..particles.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let nearest =
+                    (0..particles.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
                 Place::Particles(vec![(nearest.unwrap_or(0) as u32, 1.0)])
             }
             Target::Body(b) => Place::Body(b as u16),
         };
-        Probes { places: plan.probes.iter().map(place).collect() }
+        Probes {
+            places: plan.probes.iter().map(place).collect(),
+        }
     }
 
     /// Follows particles to their new places.
     pub(crate) fn reorder(&mut self, destination: &[u32]) {
         for place in &mut self.places {
             if let Place::Particles(particles) = place {
-                particles.iter_mut().for_each(|p| p.0 = destination[p.0 as usize]);
+                particles
+                    .iter_mut()
+                    .for_each(|p| p.0 = destination[p.0 as usize]);
             }
         }
     }
@@ -69,7 +77,9 @@ impl Probes {
     pub(crate) fn add_drift(&mut self, moved: impl Fn(u32) -> Vec3) {
         for place in &mut self.places {
             if let Place::Nodes { nodes, .. } = place {
-                nodes.iter_mut().for_each(|n| n.displacement += moved(n.node));
+                nodes
+                    .iter_mut()
+                    .for_each(|n| n.displacement += moved(n.node));
             }
         }
     }
@@ -106,12 +116,22 @@ impl Place {
     fn vector(&self, sim: &Simulation, quantity: Quantity) -> Vec3 {
         match self {
             Place::Nodes { nodes, .. } => {
-                let weight = |n: &SurfaceNode| if quantity == Quantity::Reaction { 1.0 } else { n.weight };
-                nodes.iter().map(|n| n.vector(sim, quantity) * weight(n)).sum()
+                let weight = |n: &SurfaceNode| {
+                    if quantity == Quantity::Reaction {
+                        1.0
+                    } else {
+                        n.weight
+                    }
+                };
+                nodes
+                    .iter()
+                    .map(|n| n.vector(sim, quantity) * weight(n))
+                    .sum()
             }
-            Place::Particles(particles) => {
-                particles.iter().map(|&(p, w)| particle_vector(sim, p as usize, quantity) * w).sum()
-            }
+            Place::Particles(particles) => particles
+                .iter()
+                .map(|&(p, w)| particle_vector(sim, p as usize, quantity) * w)
+                .sum(),
             Place::Body(body) => {
                 let mean = body_mean(sim, *body, |p| particle_vector(sim, p, quantity).to_array());
                 Vec3::from_array(mean)
@@ -131,7 +151,11 @@ impl Place {
             }
             Place::Particles(particles) => {
                 for &(p, weight) in particles {
-                    crate::tensor::add_scaled(&mut mean, &sim.particles().stress[p as usize], weight);
+                    crate::tensor::add_scaled(
+                        &mut mean,
+                        &sim.particles().stress[p as usize],
+                        weight,
+                    );
                 }
             }
             Place::Body(body) => mean = body_mean(sim, *body, |p| sim.particles().stress[p]),
@@ -193,7 +217,10 @@ fn boundary_surface(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Place {
     let area: f64 = faces.iter().map(|&f| mesh.face_area(f).length()).sum();
     let mut shares: Vec<(u32, f64)> = faces
         .iter()
-        .flat_map(|&f| mesh.face_nodes(f).map(|n| (n, mesh.face_area(f).length() / (3.0 * area))))
+        .flat_map(|&f| {
+            mesh.face_nodes(f)
+                .map(|n| (n, mesh.face_area(f).length() / (3.0 * area)))
+        })
         .collect();
     shares.sort_by_key(|s| s.0);
     let nodes = shares.chunk_by(|a, b| a.0 == b.0).map(|same| SurfaceNode {
@@ -202,7 +229,10 @@ fn boundary_surface(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Place {
         start: mesh.nodes[same[0].0 as usize],
         displacement: Vec3::ZERO,
     });
-    Place::Nodes { nodes: nodes.collect(), elements: occupied_elements(mesh, surface, offsets) }
+    Place::Nodes {
+        nodes: nodes.collect(),
+        elements: occupied_elements(mesh, surface, offsets),
+    }
 }
 
 /// Elements with particles next to a surface, with their shares of its area.
@@ -216,7 +246,10 @@ fn occupied_elements(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Vec<(u32, 
         }
     }
     let total: f64 = elements.iter().map(|e| e.1).sum();
-    elements.iter().map(|&(e, area)| (e, area / total)).collect()
+    elements
+        .iter()
+        .map(|&(e, area)| (e, area / total))
+        .collect()
 }
 
 /// Particles next to a surface; those of an element share its faces' area equally.

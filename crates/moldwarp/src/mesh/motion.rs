@@ -34,7 +34,8 @@ impl Follower {
     /// `surfaces` are the absorbing ones; `free` projects a vector into the directions that a
     /// node's fixities, rollers and prescribed velocities leave.
     pub fn new(mesh: &Mesh, surfaces: &[&[Face]], free: impl Fn(u32) -> Mat3 + Sync) -> Follower {
-        let normals: Vec<Vec<(u32, Vec3)>> = surfaces.iter().map(|f| node_normals(mesh, f)).collect();
+        let normals: Vec<Vec<(u32, Vec3)>> =
+            surfaces.iter().map(|f| node_normals(mesh, f)).collect();
         let mut follows = Vec::new();
         for (s, own) in normals.iter().enumerate() {
             let mean = own.iter().map(|n| n.1).sum::<Vec3>().normalize_or_zero();
@@ -46,7 +47,8 @@ impl Follower {
                 let along = other.iter().filter(|n| n.1.dot(mean).abs() > 0.05);
                 along.for_each(|&(node, _)| weights[node as usize] = Some(0.0));
             }
-            own.iter().for_each(|&(node, _)| weights[node as usize] = Some(1.0));
+            own.iter()
+                .for_each(|&(node, _)| weights[node as usize] = Some(1.0));
             let weights = harmonic(mesh, &weights);
             let followers: Vec<Follow> = (0..mesh.nodes.len())
                 .into_par_iter()
@@ -76,7 +78,8 @@ impl Follower {
     /// Moves the mesh; `moved` is the displacement of the material at a node, m.
     pub fn follow(&self, mesh: &mut Mesh, moved: impl Fn(u32) -> Vec3) {
         for follow in &self.follows {
-            mesh.nodes[follow.node as usize] += follow.motion * moved(follow.source).dot(follow.normal);
+            mesh.nodes[follow.node as usize] +=
+                follow.motion * moved(follow.source).dot(follow.normal);
         }
         mesh.update_geometry();
     }
@@ -84,19 +87,29 @@ impl Follower {
 
 /// Unit normals at the nodes of a surface, weighted by area.
 fn node_normals(mesh: &Mesh, faces: &[Face]) -> Vec<(u32, Vec3)> {
-    let mut areas: Vec<(u32, Vec3)> =
-        faces.iter().flat_map(|&f| mesh.face_nodes(f).map(|n| (n, mesh.face_area(f)))).collect();
+    let mut areas: Vec<(u32, Vec3)> = faces
+        .iter()
+        .flat_map(|&f| mesh.face_nodes(f).map(|n| (n, mesh.face_area(f))))
+        .collect();
     areas.sort_by_key(|a| a.0);
     areas
         .chunk_by(|a, b| a.0 == b.0)
-        .map(|same| (same[0].0, same.iter().map(|a| a.1).sum::<Vec3>().normalize_or_zero()))
+        .map(|same| {
+            (
+                same[0].0,
+                same.iter().map(|a| a.1).sum::<Vec3>().normalize_or_zero(),
+            )
+        })
         .collect()
 }
 
 fn nearest(mesh: &Mesh, surface: &[(u32, Vec3)], node: u32) -> (u32, Vec3) {
     let x = mesh.nodes[node as usize];
     let distance = |n: &(u32, Vec3)| (mesh.nodes[n.0 as usize] - x).length_squared();
-    *surface.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a surface has nodes")
+    *surface
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .expect("a surface has nodes")
 }
 
 /// Solves Laplace's equation for the nodes without a given value, by conjugate gradients.
@@ -141,7 +154,10 @@ fn stiffness_times(mesh: &Mesh, w: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; w.len()];
     for (e, tet) in mesh.tets.iter().enumerate() {
         let gradients = mesh.all_gradients(e);
-        let slope: Vec3 = (0..4).map(|i| gradients[i] * w[tet[i] as usize]).sum::<Vec3>() * mesh.volumes[e];
+        let slope: Vec3 = (0..4)
+            .map(|i| gradients[i] * w[tet[i] as usize])
+            .sum::<Vec3>()
+            * mesh.volumes[e];
         for i in 0..4 {
             out[tet[i] as usize] += gradients[i].dot(slope);
         }
@@ -171,7 +187,11 @@ mod tests {
         let before = mesh.nodes.clone();
         let bottom = mesh.surfaces[4].faces.clone();
         let top_held = |n: u32| {
-            if before[n as usize].z > 1.999 { Mat3::ZERO } else { Mat3::IDENTITY }
+            if before[n as usize].z > 1.999 {
+                Mat3::ZERO
+            } else {
+                Mat3::IDENTITY
+            }
         };
         let follower = Follower::new(&mesh, &[&bottom], top_held);
         follower.follow(&mut mesh, |_| Vec3::new(0.3, 0.0, -0.1));
@@ -188,6 +208,9 @@ mod tests {
         let bottom = mesh.surfaces[4].faces.clone();
         let follower = Follower::new(&mesh, &[&bottom], |_| Mat3::IDENTITY);
         follower.follow(&mut mesh, |_| Vec3::new(0.0, 0.0, 0.25));
-        assert_eq!(mesh.bounds(), [Vec3::new(0.0, 0.0, 0.25), Vec3::new(1.0, 1.0, 1.25)]);
+        assert_eq!(
+            mesh.bounds(),
+            [Vec3::new(0.0, 0.0, 0.25), Vec3::new(1.0, 1.0, 1.25)]
+        );
     }
 }

@@ -50,12 +50,18 @@ impl Particles {
 
     /// Σ m v, kg m/s.
     pub fn momentum(&self) -> Vec3 {
-        self.mass.iter().zip(&self.velocity).map(|(&m, &v)| m * v).sum()
+        self.mass
+            .iter()
+            .zip(&self.velocity)
+            .map(|(&m, &v)| m * v)
+            .sum()
     }
 
     /// Σ m x × v, kg m²/s.
     pub fn angular_momentum(&self) -> Vec3 {
-        (0..self.len()).map(|p| self.mass[p] * self.position[p].cross(self.velocity[p])).sum()
+        (0..self.len())
+            .map(|p| self.mass[p] * self.position[p].cross(self.velocity[p]))
+            .sum()
     }
 
     /// For each id, the place of its particle in the arrays.

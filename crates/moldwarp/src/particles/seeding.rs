@@ -18,14 +18,17 @@ impl Seeding {
     pub fn points(self) -> Vec<[f64; 4]> {
         let drawn = |corner: [f64; 4], share: f64| corner.map(|n| 0.25 + (n - 0.25) * share);
         let corner = |i: usize| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 });
-        let middle = |i: usize, k: usize| std::array::from_fn(|j| if i == j || k == j { 0.5 } else { 0.0 });
+        let middle =
+            |i: usize, k: usize| std::array::from_fn(|j| if i == j || k == j { 0.5 } else { 0.0 });
         match self {
             Seeding::One => vec![[0.25; 4]],
             Seeding::Four => (0..4).map(|i| drawn(corner(i), FOUR)).collect(),
             Seeding::Ten => {
                 let corners = (0..4).map(|i| drawn(corner(i), TEN));
                 let edges = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
-                corners.chain(edges.iter().map(|&(i, k)| drawn(middle(i, k), TEN))).collect()
+                corners
+                    .chain(edges.iter().map(|&(i, k)| drawn(middle(i, k), TEN)))
+                    .collect()
             }
         }
     }
@@ -37,7 +40,11 @@ pub enum SeedingError {
     #[error("body `{body}` has no particles: its region holds no seeding point of any element")]
     Empty { body: String },
     #[error("bodies `{first}` and `{second}` overlap in element {element}")]
-    Overlap { first: String, second: String, element: u32 },
+    Overlap {
+        first: String,
+        second: String,
+        element: u32,
+    },
 }
 
 /// A particle to be.
@@ -59,7 +66,9 @@ pub fn seed(
         let before = found.len();
         fill(mesh, body, b as u16, &mut found);
         if found.len() == before {
-            return Err(SeedingError::Empty { body: body.name.clone() });
+            return Err(SeedingError::Empty {
+                body: body.name.clone(),
+            });
         }
     }
     found.sort_by_key(|s| (s.element, s.body));
@@ -89,7 +98,12 @@ fn fill(mesh: &Mesh, body: &Body, number: u16, found: &mut Vec<Seed>) {
         for n in &rule {
             let position = (0..4).map(|i| n[i] * corners[i]).sum();
             if wanted(position) {
-                found.push(Seed { element, position, volume, body: number });
+                found.push(Seed {
+                    element,
+                    position,
+                    volume,
+                    body: number,
+                });
             }
         }
     };
@@ -108,7 +122,9 @@ fn fill(mesh: &Mesh, body: &Body, number: u16, found: &mut Vec<Seed>) {
 fn check_overlap(found: &[Seed], bodies: &[Body], mesh: &Mesh) -> Result<(), SeedingError> {
     for seeds in found.chunk_by(|a, b| a.element == b.element) {
         let (first, element) = (seeds[0].body, seeds[0].element);
-        let Some(other) = seeds.iter().find(|s| s.body != first) else { continue };
+        let Some(other) = seeds.iter().find(|s| s.body != first) else {
+            continue;
+        };
         let volume: f64 = seeds.iter().map(|s| s.volume).sum();
         let twice = |i: usize| seeds[..i].iter().any(|s| s.position == seeds[i].position);
         if volume > mesh.volumes[element as usize] * (1.0 + 1e-9) || (0..seeds.len()).any(twice) {
@@ -131,7 +147,9 @@ mod tests {
     fn four_and_ten_points_integrate_quadratics() {
         for rule in [Seeding::Four, Seeding::Ten] {
             let points = rule.points();
-            let mean = |f: &dyn Fn(&[f64; 4]) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
+            let mean = |f: &dyn Fn(&[f64; 4]) -> f64| {
+                points.iter().map(f).sum::<f64>() / points.len() as f64
+            };
             assert!((mean(&|n| n[1]) - 0.25).abs() < 1e-15);
             assert!((mean(&|n| n[2] * n[2]) - 0.1).abs() < 1e-15);
             assert!((mean(&|n| n[0] * n[3]) - 0.05).abs() < 1e-15);

@@ -71,7 +71,8 @@ impl Active {
                 *cell = self.elements.len() as u32;
                 self.elements.push(e as u32);
                 self.offsets.push(particle_offsets[e]);
-                self.cell_nodes.push(mesh.tets[e].map(|n| self.slot_of_node[n as usize]));
+                self.cell_nodes
+                    .push(mesh.tets[e].map(|n| self.slot_of_node[n as usize]));
             }
         }
         self.offsets.push(particle_offsets[mesh.tets.len()]);

@@ -9,9 +9,17 @@ use crate::simulation::{Simulation, Stop};
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     move_particles(sim);
     if sim.follower.moves() {
-        let Simulation { plan, active, nodes, follower, .. } = sim;
+        let Simulation {
+            plan,
+            active,
+            nodes,
+            follower,
+            ..
+        } = sim;
         follower.follow(&mut plan.mesh, |node| {
-            nodes.get(active.slot_of_node[node as usize] as usize).map_or(Vec3::ZERO, |n| n.moved)
+            nodes
+                .get(active.slot_of_node[node as usize] as usize)
+                .map_or(Vec3::ZERO, |n| n.moved)
         });
     }
     if locate(sim)? {
@@ -22,12 +30,22 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
 
 /// x_p += Σ N_i Δu_i (Jassim et al. Eq. 9).
 fn move_particles(sim: &mut Simulation) {
-    let Simulation { plan, particles, active, nodes, ledger, .. } = sim;
+    let Simulation {
+        plan,
+        particles,
+        active,
+        nodes,
+        ledger,
+        ..
+    } = sim;
     let (mesh, active, nodes, gravity) = (&plan.mesh, &*active, &nodes[..], plan.gravity);
     let mass = &particles.mass;
     let arrays = (&mut particles.position[..], &mut particles.displacement[..]);
     let block = ByCell::new(&active.offsets, arrays);
-    let lifted = fold(block, BLOCK, &|block: ByCell<(&mut [Vec3], &mut [Vec3])>| {
+    let lifted = fold(block, BLOCK, &|block: ByCell<(
+        &mut [Vec3],
+        &mut [Vec3],
+    )>| {
         let first = block.first();
         let (positions, displacements) = block.particles;
         let mut work = 0.0;
@@ -49,7 +67,12 @@ fn move_particles(sim: &mut Simulation) {
 
 /// Walks each particle to its element; says whether any has a new one.
 fn locate(sim: &mut Simulation) -> Result<bool, Stop> {
-    let Simulation { plan, particles, active, .. } = sim;
+    let Simulation {
+        plan,
+        particles,
+        active,
+        ..
+    } = sim;
     let (mesh, position) = (&plan.mesh, &particles.position);
     let block = ByCell::new(&active.offsets, &mut particles.element[..]);
     let (outside, crossed) = fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {

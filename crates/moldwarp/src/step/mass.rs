@@ -36,10 +36,20 @@ pub(super) fn run(sim: &mut Simulation, h: f64) {
     if theta > 0.0 {
         exchange(sim);
     }
-    let Simulation { active, nodes, cells, constraints, ledger, .. } = sim;
+    let Simulation {
+        active,
+        nodes,
+        cells,
+        constraints,
+        ledger,
+        ..
+    } = sim;
     let (active, sums, constraints) = (&*active, &cells.sums[..], &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let power = fold(items, BLOCK, &|(slots, nodes): (Range<usize>, &mut [Node])| {
+    let power = fold(items, BLOCK, &|(slots, nodes): (
+        Range<usize>,
+        &mut [Node],
+    )| {
         let mut power = 0.0;
         for (slot, node) in slots.zip(nodes) {
             node.received = node.acceleration;
@@ -64,10 +74,23 @@ pub(super) fn run(sim: &mut Simulation, h: f64) {
 
 /// Σ_j M_ij (a_i − a_j) of each filled cell.
 fn exchange(sim: &mut Simulation) {
-    let Simulation { active, nodes, cells, .. } = sim;
+    let Simulation {
+        active,
+        nodes,
+        cells,
+        ..
+    } = sim;
     let (active, nodes) = (&*active, &nodes[..]);
-    let items = (0..active.elements.len(), &mut cells.sums[..], &cells.forces[..]);
-    fold(items, BLOCK, &|(range, sums, forces): (Range<usize>, &mut [CellSums], &[CellForce])| {
+    let items = (
+        0..active.elements.len(),
+        &mut cells.sums[..],
+        &cells.forces[..],
+    );
+    fold(items, BLOCK, &|(range, sums, forces): (
+        Range<usize>,
+        &mut [CellSums],
+        &[CellForce],
+    )| {
         for ((c, sum), force) in range.zip(sums).zip(forces) {
             sum.exchange = [Vec3::ZERO; 4];
             if !force.filled {

@@ -57,9 +57,16 @@ impl Simulation {
         to_nodes::run(self, before);
         let stable = time_step::choose(self).map_err(|error| self.no_time_step(error))?;
         // A step that would leave a sliver of the stage is stretched to its end.
-        let dt = if limit <= stable * (1.0 + 1e-6) { limit } else { stable };
+        let dt = if limit <= stable * (1.0 + 1e-6) {
+            limit
+        } else {
+            stable
+        };
         let after = 0.5 * dt;
-        self.constraints.set_time(self.clock.time + after, before == 0.0 && self.clock.given_velocities);
+        self.constraints.set_time(
+            self.clock.time + after,
+            before == 0.0 && self.clock.given_velocities,
+        );
         nodes::run(self, before, after);
         mass::run(self, before + after);
         to_particles::run(self, before, after);

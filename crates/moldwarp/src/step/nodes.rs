@@ -16,16 +16,33 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     }
     apply_loads(sim);
     let damping = sim.local_damping();
-    let Simulation { plan, active, nodes, cells, constraints, absorbing, ledger, .. } = sim;
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        cells,
+        constraints,
+        absorbing,
+        ledger,
+        ..
+    } = sim;
     let (active, mesh, gravity, cells) = (&*active, &plan.mesh, plan.gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let work = fold(items, BLOCK, &|(slots, nodes): (Range<usize>, &mut [Node])| {
+    let work = fold(items, BLOCK, &|(slots, nodes): (
+        Range<usize>,
+        &mut [Node],
+    )| {
         let mut work = DriftWork::default();
         for (slot, node) in slots.zip(nodes) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
-                *node = Node { grid_velocity: grid.0, moved: grid.1, filling: node.filling, ..Node::default() };
+                *node = Node {
+                    grid_velocity: grid.0,
+                    moved: grid.1,
+                    filling: node.filling,
+                    ..Node::default()
+                };
                 continue;
             }
             let mesh_node = active.nodes[slot];
@@ -34,7 +51,8 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 .iter()
                 .map(|&(c, local)| {
                     let force = &cells.forces[c as usize];
-                    let gradient = mesh.all_gradients(active.elements[c as usize] as usize)[local as usize];
+                    let gradient =
+                        mesh.all_gradients(active.elements[c as usize] as usize)[local as usize];
                     let stress = std::array::from_fn(|k| force.stress[k] + force.viscous[k]);
                     -tensor::times(&stress, gradient)
                 })
@@ -65,7 +83,15 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
 
 /// Loads on particles, at the shape functions of the points they act on.
 fn apply_loads(sim: &mut Simulation) {
-    let Simulation { plan, particles, active, nodes, loads, clock, .. } = sim;
+    let Simulation {
+        plan,
+        particles,
+        active,
+        nodes,
+        loads,
+        clock,
+        ..
+    } = sim;
     let mesh = &plan.mesh;
     for point in loads.iter() {
         let p = point.particle as usize;
@@ -80,5 +106,7 @@ fn apply_loads(sim: &mut Simulation) {
 
 /// −1, 0 or 1 per component.
 fn signs(v: Vec3) -> Vec3 {
-    v.to_array().map(|x| if x == 0.0 { 0.0 } else { x.signum() }).into()
+    v.to_array()
+        .map(|x| if x == 0.0 { 0.0 } else { x.signum() })
+        .into()
 }

@@ -9,10 +9,24 @@ use crate::simulation::Simulation;
 use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation, dt: f64) {
-    let Simulation { plan, active, nodes, cells, constraints, absorbing, ledger, probes, .. } = sim;
-    let (active, sums, constraints, gravity) = (&*active, &cells.sums[..], &*constraints, plan.gravity);
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        cells,
+        constraints,
+        absorbing,
+        ledger,
+        probes,
+        ..
+    } = sim;
+    let (active, sums, constraints, gravity) =
+        (&*active, &cells.sums[..], &*constraints, plan.gravity);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let work = fold(items, BLOCK, &|(slots, nodes): (Range<usize>, &mut [Node])| {
+    let work = fold(items, BLOCK, &|(slots, nodes): (
+        Range<usize>,
+        &mut [Node],
+    )| {
         let mut work = DriftWork::default();
         for (slot, node) in slots.zip(nodes) {
             let momentum: Vec3 = active
@@ -20,7 +34,11 @@ pub(super) fn run(sim: &mut Simulation, dt: f64) {
                 .iter()
                 .map(|&(c, local)| sums[c as usize].momentum[local as usize])
                 .sum();
-            node.grid_velocity = if node.mass > 0.0 { momentum / node.mass } else { Vec3::ZERO };
+            node.grid_velocity = if node.mass > 0.0 {
+                momentum / node.mass
+            } else {
+                Vec3::ZERO
+            };
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =
                     constraint.free * node.grid_velocity + constraints.prescribed(constraint);
@@ -35,6 +53,9 @@ pub(super) fn run(sim: &mut Simulation, dt: f64) {
         let slot = active.slot_of_node[mesh_node as usize] as usize;
         nodes.get(slot).map_or(Vec3::ZERO, |node| node.moved)
     };
-    absorbing.nodes.iter_mut().for_each(|n| n.displacement += moved(n.node));
+    absorbing
+        .nodes
+        .iter_mut()
+        .for_each(|n| n.displacement += moved(n.node));
     probes.add_drift(moved);
 }

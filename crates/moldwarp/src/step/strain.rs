@@ -29,11 +29,21 @@ pub(super) fn gradient(mesh: &Mesh, e: usize, u: [Vec3; 4]) -> Mat3 {
 }
 
 fn gradients(sim: &mut Simulation) {
-    let Simulation { plan, active, nodes, cells, ledger, .. } = sim;
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        cells,
+        ledger,
+        ..
+    } = sim;
     let (mesh, active, nodes) = (&plan.mesh, &*active, &nodes[..]);
     let (sums, forces) = (&cells.sums[..], &cells.forces[..]);
     let items = (0..sums.len(), &mut cells.strains[..]);
-    let work = fold(items, BLOCK, &|(range, strains): (Range<usize>, &mut [CellStrain])| {
+    let work = fold(items, BLOCK, &|(range, strains): (
+        Range<usize>,
+        &mut [CellStrain],
+    )| {
         let mut work = [0.0; 3];
         for (c, strain) in range.zip(strains) {
             let moved = active.cell_nodes[c].map(|n| nodes[n as usize].moved);
@@ -56,14 +66,27 @@ fn gradients(sim: &mut Simulation) {
 /// surfaces.
 #[inline]
 fn weight(force: &CellForce, sum: &CellSums, volume: f64) -> f64 {
-    if force.filled { volume } else { sum.volume.min(volume) }
+    if force.filled {
+        volume
+    } else {
+        sum.volume.min(volume)
+    }
 }
 
 fn average_at_nodes(sim: &mut Simulation) {
-    let Simulation { plan, active, nodes, cells, .. } = sim;
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        cells,
+        ..
+    } = sim;
     let (mesh, active, cells) = (&plan.mesh, &*active, &*cells);
     let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (Range<usize>, &mut [Node])| {
+    fold(items, BLOCK, &|(slots, nodes): (
+        Range<usize>,
+        &mut [Node],
+    )| {
         for (slot, node) in slots.zip(nodes) {
             let (mut sum, mut weights) = (0.0, 0.0);
             for &(c, _) in active.attached(slot) {

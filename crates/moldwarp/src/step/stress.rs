@@ -9,7 +9,15 @@ use crate::tensor::{self, Voigt};
 type Arrays<'a> = (&'a mut [Voigt], &'a mut [f64]);
 
 pub(super) fn run(sim: &mut Simulation) {
-    let Simulation { plan, particles, active, nodes, cells, ledger, .. } = sim;
+    let Simulation {
+        plan,
+        particles,
+        active,
+        nodes,
+        cells,
+        ledger,
+        ..
+    } = sim;
     let (active, nodes, strains) = (&*active, &nodes[..], &cells.strains[..]);
     let body = &particles.body;
     let (materials, bodies) = (&plan.materials, &plan.bodies);
@@ -23,7 +31,11 @@ pub(super) fn run(sim: &mut Simulation) {
         for c in block.cells {
             let strain = &strains[c];
             let volumetric = if smoothing {
-                active.cell_nodes[c].iter().map(|&n| nodes[n as usize].volumetric).sum::<f64>() * 0.25
+                active.cell_nodes[c]
+                    .iter()
+                    .map(|&n| nodes[n as usize].volumetric)
+                    .sum::<f64>()
+                    * 0.25
             } else {
                 strain.volumetric
             };
@@ -43,9 +55,8 @@ pub(super) fn run(sim: &mut Simulation) {
                 let middle_volume = 0.5 * *volume * (1.0 + growth);
                 *volume *= growth;
                 work[0] += tensor::dot(&middle, &increment) * middle_volume;
-                work[1] += tensor::trace(&middle) / 3.0
-                    * (strain.volumetric - volumetric)
-                    * middle_volume;
+                work[1] +=
+                    tensor::trace(&middle) / 3.0 * (strain.volumetric - volumetric) * middle_volume;
             }
         }
         work

@@ -34,15 +34,29 @@ pub(super) fn choose(sim: &Simulation) -> Result<f64, TimeStepError> {
 /// fade together and the particles' own density counts. Viscosity β lowers the step by
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
 pub(crate) fn critical(sim: &Simulation) -> f64 {
-    let Simulation { plan, active, nodes, cells, .. } = sim;
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        cells,
+        ..
+    } = sim;
     let stiffest = sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max);
     fold(0..cells.sums.len(), BLOCK, &|range: Range<usize>| {
         let mut smallest = Smallest::default();
         for c in range {
             let sum = &cells.sums[c];
-            let modulus = if sum.volume > 0.0 { sum.wave_modulus } else { stiffest };
+            let modulus = if sum.volume > 0.0 {
+                sum.wave_modulus
+            } else {
+                stiffest
+            };
             let density = if cells.forces[c].filled {
-                active.cell_nodes[c].iter().map(|&n| nodes[n as usize].density).sum::<f64>() * 0.25
+                active.cell_nodes[c]
+                    .iter()
+                    .map(|&n| nodes[n as usize].density)
+                    .sum::<f64>()
+                    * 0.25
             } else if sum.volume > 0.0 {
                 sum.mass.iter().sum::<f64>() / sum.volume
             } else {

@@ -21,10 +21,23 @@ pub(super) fn run(sim: &mut Simulation, before: f64) {
 
 /// Sums over the particles of each cell.
 fn sum_cells(sim: &mut Simulation) {
-    let Simulation { plan, particles, active, cells, elasticity, .. } = sim;
+    let Simulation {
+        plan,
+        particles,
+        active,
+        cells,
+        elasticity,
+        ..
+    } = sim;
     let (mesh, active, particles, elasticity) = (&plan.mesh, &*active, &*particles, &*elasticity);
-    let items = (ByCell::new(&active.offsets, 0..particles.len()), &mut cells.sums[..]);
-    fold(items, BLOCK, &|(block, sums): (ByCell<Range<usize>>, &mut [CellSums])| {
+    let items = (
+        ByCell::new(&active.offsets, 0..particles.len()),
+        &mut cells.sums[..],
+    );
+    fold(items, BLOCK, &|(block, sums): (
+        ByCell<Range<usize>>,
+        &mut [CellSums],
+    )| {
         for (sum, c) in sums.iter_mut().zip(block.cells) {
             *sum = CellSums::default();
             let e = active.elements[c] as usize;
@@ -55,10 +68,19 @@ fn sum_cells(sim: &mut Simulation) {
 
 /// Mass, velocity, filling and density of each node.
 fn sum_nodes(sim: &mut Simulation) {
-    let Simulation { plan, active, nodes, cells, .. } = sim;
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        cells,
+        ..
+    } = sim;
     let (active, sums, volumes) = (&*active, &cells.sums, &plan.mesh.node_volumes);
     let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (Range<usize>, &mut [Node])| {
+    fold(items, BLOCK, &|(slots, nodes): (
+        Range<usize>,
+        &mut [Node],
+    )| {
         for (slot, node) in slots.zip(nodes) {
             let (mut mass, mut momentum, mut volume, mut all_mass) = (0.0, Vec3::ZERO, 0.0, 0.0);
             for &(c, local) in active.attached(slot) {
@@ -70,7 +92,11 @@ fn sum_nodes(sim: &mut Simulation) {
             }
             let whole = volumes[active.nodes[slot] as usize];
             node.mass = mass;
-            node.velocity = if mass > 0.0 { momentum / mass } else { Vec3::ZERO };
+            node.velocity = if mass > 0.0 {
+                momentum / mass
+            } else {
+                Vec3::ZERO
+            };
             node.filling = volume / whole;
             node.density = all_mass / whole;
             node.load = Vec3::ZERO;
@@ -80,14 +106,29 @@ fn sum_nodes(sim: &mut Simulation) {
 
 /// Stress times volume of each cell, and the part of its work that belongs to the last drift.
 fn cell_forces(sim: &mut Simulation, before: f64) {
-    let Simulation { plan, active, nodes, cells, ledger, clock, .. } = sim;
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        cells,
+        ledger,
+        clock,
+        ..
+    } = sim;
     let (mesh, active, nodes, sums) = (&plan.mesh, &*active, &nodes[..], &cells.sums[..]);
     let mixed = plan.numerics.integration == Integration::Mixed;
     // A viscous stress is C : ε̇ times this over the last step; there is none before the first.
-    let per_step = if before > 0.0 { plan.numerics.viscosity / (2.0 * before) } else { 0.0 };
+    let per_step = if before > 0.0 {
+        plan.numerics.viscosity / (2.0 * before)
+    } else {
+        0.0
+    };
     debug_assert!(before == 0.0 || (2.0 * before - clock.dt).abs() <= 1e-12 * clock.dt);
     let items = (0..sums.len(), &mut cells.forces[..]);
-    let work = fold(items, BLOCK, &|(range, forces): (Range<usize>, &mut [CellForce])| {
+    let work = fold(items, BLOCK, &|(range, forces): (
+        Range<usize>,
+        &mut [CellForce],
+    )| {
         let mut work = [0.0; 3];
         for (c, force) in range.zip(forces) {
             let e = active.elements[c] as usize;
@@ -105,7 +146,11 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             }
             let gradient = super::strain::gradient(mesh, e, corners.map(|n| n.moved));
             if per_step > 0.0 {
-                let fuller = if force.filled && sum.volume > 0.0 { mesh.volumes[e] / sum.volume } else { 1.0 };
+                let fuller = if force.filled && sum.volume > 0.0 {
+                    mesh.volumes[e] / sum.volume
+                } else {
+                    1.0
+                };
                 force.viscous = viscous(&gradient, sum.moduli.map(|m| m * per_step * fuller));
             }
             let particles = 0.5 * tensor::contract(&sum.stress, &gradient);
@@ -122,19 +167,32 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
 fn mean_stress(c: usize, active: &super::Active, mesh: &crate::Mesh, sums: &[CellSums]) -> Voigt {
     let (mut stress, mut volume) = (sums[c].stress, sums[c].volume);
     if volume == 0.0 {
-        for &neighbour in mesh.neighbours[active.elements[c] as usize].iter().filter(|&&n| n != NONE) {
+        for &neighbour in mesh.neighbours[active.elements[c] as usize]
+            .iter()
+            .filter(|&&n| n != NONE)
+        {
             if let Some(other) = sums.get(active.cell_of_element[neighbour as usize] as usize) {
                 add_scaled(&mut stress, &other.stress, 1.0);
                 volume += other.volume;
             }
         }
     }
-    if volume > 0.0 { stress.map(|s| s / volume) } else { stress }
+    if volume > 0.0 {
+        stress.map(|s| s / volume)
+    } else {
+        stress
+    }
 }
 
 /// Moduli (λ, G) times strain.
 fn viscous(gradient: &Mat3, [lame, shear]: [f64; 2]) -> Voigt {
     let strain = tensor::strain(gradient);
     let pressure = lame * tensor::trace(&strain);
-    std::array::from_fn(|k| if k < 3 { pressure + 2.0 * shear * strain[k] } else { shear * strain[k] })
+    std::array::from_fn(|k| {
+        if k < 3 {
+            pressure + 2.0 * shear * strain[k]
+        } else {
+            shear * strain[k]
+        }
+    })
 }

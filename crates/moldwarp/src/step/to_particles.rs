@@ -8,7 +8,15 @@ use crate::simulation::Simulation;
 
 pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     let h = before + after;
-    let Simulation { plan, particles, active, nodes, cells, ledger, .. } = sim;
+    let Simulation {
+        plan,
+        particles,
+        active,
+        nodes,
+        cells,
+        ledger,
+        ..
+    } = sim;
     let (mesh, active, nodes) = (&plan.mesh, &*active, &nodes[..]);
     // Share of the mesh's velocity that particles take on in a kick.
     let blend = -libm::expm1(-plan.numerics.pic_rate * h);
@@ -33,8 +41,9 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 *v += a * h;
                 energy[0] += m * a.length_squared();
                 if blend > 0.0 {
-                    let grid: Vec3 =
-                        (0..4).map(|i| (corners[i].velocity + corners[i].received * h) * n[i]).sum();
+                    let grid: Vec3 = (0..4)
+                        .map(|i| (corners[i].velocity + corners[i].received * h) * n[i])
+                        .sum();
                     let own = v.length_squared();
                     *v += (grid - *v) * blend;
                     energy[1] += 0.5 * m * (own - v.length_squared());

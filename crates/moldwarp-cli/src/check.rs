@@ -1,0 +1,92 @@
+//! `moldwarp check`.
+
+use crate::args::CheckArgs;
+use crate::exit::Exit;
+use crate::run::load;
+use crate::{Failure, say, text};
+use moldwarp_io::check::{Forecast, check as forecast};
+use std::time::Duration;
+use text::number;
+
+pub fn check(args: &CheckArgs) -> Result<Exit, Failure> {
+    let (scene, threads) = load(&args.scene)?;
+    let forecast = forecast(scene)?;
+    say(&plan(&forecast, threads));
+    match forecast.stopped {
+        None => Ok(Exit::Done),
+        Some(stop) => Err(Failure::new(
+            Exit::Guard,
+            miette::miette!("stopped in the first trial steps: {stop}"),
+        )),
+    }
+}
+
+/// Above this ratio of longest edge to shortest altitude an element is a sliver.
+const SLIVER: f64 = 10.0;
+
+fn plan(f: &Forecast, threads: usize) -> String {
+    let mut lines = vec![f.title.clone()];
+    lines.extend(f.notes.iter().map(|n| format!("note: {n}")));
+    lines.push(format!(
+        "mesh        {} elements, {} nodes, mean edge {} m",
+        f.elements,
+        f.nodes,
+        number(f.quality.mean_edge)
+    ));
+    lines.push(format!(
+        "            shortest altitude {} m (element {}), worst edge over altitude {} (element {}){}",
+        number(f.quality.smallest_altitude),
+        f.quality.smallest_altitude_element,
+        number(f.quality.worst_aspect),
+        f.quality.worst_aspect_element,
+        if f.quality.worst_aspect > SLIVER {
+            ": a sliver"
+        } else {
+            ""
+        }
+    ));
+    lines.extend(f.bodies.iter().map(|b| {
+        format!(
+            "body        `{}` of `{}`: {} particles, {} m3, {} kg",
+            b.name,
+            b.material,
+            b.particles,
+            number(b.volume),
+            number(b.mass)
+        )
+    }));
+    lines.push(steps(f));
+    lines.push(effort(f, threads));
+    lines.push(format!(
+        "disk        {} in {} frames and the history",
+        text::bytes(f.disk),
+        f.frames
+    ));
+    let columns: Vec<&str> = f.columns.iter().map(|c| c.0.as_str()).collect();
+    lines.push(format!("history     {}", columns.join(" ")));
+    lines.iter().map(|l| format!("{l}\n")).collect()
+}
+
+fn steps(f: &Forecast) -> String {
+    format!(
+        "time step   {} s (stable: {} s); about {} steps to t = {} s",
+        number(f.time_step),
+        number(f.stable_time_step),
+        f.steps,
+        number(f.end)
+    )
+}
+
+fn effort(f: &Forecast, threads: usize) -> String {
+    let time = Duration::try_from_secs_f64(f.wall_time).unwrap_or(Duration::MAX);
+    let memory = f
+        .memory
+        .map(|m| format!(", {} of memory", text::bytes(m as f64)));
+    format!(
+        "effort      about {} with {} ({} particle steps/s in a few trial steps){}",
+        text::duration(time),
+        text::threads(threads),
+        text::rate(f.rate),
+        memory.unwrap_or_default()
+    )
+}

@@ -1,0 +1,98 @@
+//! `moldwarp run`.
+
+use crate::args::{RunArgs, SceneArgs};
+use crate::exit::Exit;
+use crate::progress::Display;
+use crate::{Failure, say, text};
+use moldwarp::measure::Energies;
+use moldwarp_io::output::summary::Compared;
+use moldwarp_io::run::{Outcome, RunOptions, run as compute};
+use moldwarp_io::scene::{self, Scene};
+use std::time::Duration;
+
+pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
+    let (scene, threads) = load(&args.scene)?;
+    let options = RunOptions {
+        out: args.out.clone(),
+        force: args.force,
+        threads,
+    };
+    let outcome = compute(scene, &options, &mut Display::new(threads))?;
+    say(&conclusion(&outcome));
+    match outcome.stopped {
+        None => Ok(Exit::Done),
+        Some(stop) => Err(Failure::new(
+            Exit::Guard,
+            miette::miette!(
+                help = "frames and history up to then are kept",
+                "stopped after {} steps: {stop}",
+                outcome.summary.steps
+            ),
+        )),
+    }
+}
+
+/// Sets the threads up and reads the scene. Returns the number of threads beside it.
+pub fn load(args: &SceneArgs) -> Result<(Scene, usize), Failure> {
+    let wanted = args.threads.map_or(0, usize::from);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(wanted)
+        .build_global()
+        .map_err(|e| Failure::input(miette::miette!("cannot start {wanted} threads: {e}")))?;
+    let scene = scene::load(&args.scene, &args.sets).map_err(Failure::input)?;
+    Ok((scene, rayon::current_num_threads()))
+}
+
+/// How the run went and where to look.
+fn conclusion(outcome: &Outcome) -> String {
+    let s = &outcome.summary;
+    let wall = Duration::try_from_secs_f64(s.wall_time).unwrap_or_default();
+    let mut lines = vec![format!(
+        "t = {} s in {} steps and {}, {} particle steps/s",
+        text::number(s.time),
+        s.steps,
+        text::duration(wall),
+        text::rate(s.particle_steps_per_second)
+    )];
+    lines.extend(s.compare.iter().map(compared));
+    lines.extend(outcome.problems.iter().cloned());
+    lines.extend(ledger(&outcome.energies, s.energy_turned_over));
+    let frames = outcome.folder.collection("particles");
+    if frames.exists() {
+        lines.push(format!("frames:  {} (ParaView)", frames.display()));
+    }
+    lines.push(format!("history: {}", outcome.folder.history().display()));
+    lines.iter().map(|l| format!("{l}\n")).collect()
+}
+
+fn compared(c: &Compared) -> String {
+    format!(
+        "{}: at most {} % of the peak away from {} (at t = {} s)",
+        c.column,
+        text::number(100.0 * c.relative_difference),
+        c.file,
+        text::number(c.at_time)
+    )
+}
+
+/// The balance of energy in two lines: whether it holds, and how good the run is.
+fn ledger(energies: &Energies, turned_over: f64) -> [String; 2] {
+    let share = |joules: f64| {
+        if turned_over > 0.0 {
+            text::number(joules / turned_over)
+        } else {
+            text::number(0.0)
+        }
+    };
+    [
+        format!(
+            "energy:  residual {} of the {} J turned over",
+            share(energies.residual.abs()),
+            text::number(turned_over)
+        ),
+        format!(
+            "         numerical terms {} of it",
+            share(energies.numerical())
+        ),
+    ]
+}

@@ -1,0 +1,83 @@
+//! Figures as people read them.
+
+use std::time::Duration;
+
+/// Bytes with a decimal prefix.
+pub fn bytes(count: f64) -> String {
+    match count {
+        c if c < 1e3 => format!("{c:.0} B"),
+        c if c < 1e6 => format!("{:.0} kB", c / 1e3),
+        c if c < 1e9 => format!("{:.0} MB", c / 1e6),
+        c => format!("{:.1} GB", c / 1e9),
+    }
+}
+
+/// A wall time.
+pub fn duration(time: Duration) -> String {
+    let s = time.as_secs_f64();
+    match s {
+        s if s < 1.0 => format!("{:.0} ms", 1e3 * s),
+        s if s < 100.0 => format!("{s:.1} s"),
+        s if s < 5940.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} days", s / 86400.0),
+    }
+}
+
+/// A number with four significant digits, plain or with an exponent.
+pub fn number(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{x}");
+    }
+    let digits = 3 - x.abs().log10().floor() as i32;
+    if (-3..=7).contains(&digits) {
+        let text = format!("{x:.*}", digits.max(0) as usize);
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    } else {
+        format!("{x:.3e}")
+    }
+}
+
+/// So many threads.
+pub fn threads(count: usize) -> String {
+    match count {
+        1 => "1 thread".to_owned(),
+        n => format!("{n} threads"),
+    }
+}
+
+/// Thousands, millions … of things a second.
+pub fn rate(x: f64) -> String {
+    match x {
+        x if x < 1e3 => format!("{x:.0}"),
+        x if x < 1e6 => format!("{:.0} k", x / 1e3),
+        x => format!("{:.2} M", x / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_four_digits() {
+        let all = [0.0, 2.0, 0.013_546, 1_234_567.0, 5.5e-9, -17.25, 8000.0].map(number);
+        assert_eq!(
+            all,
+            ["0", "2", "0.01355", "1234567", "5.500e-9", "-17.25", "8000"]
+        );
+    }
+
+    #[test]
+    fn times_and_sizes_have_fitting_units() {
+        let t = [0.25, 12.0, 600.0, 7200.0, 259_200.0];
+        let t = t.map(|s| duration(Duration::from_secs_f64(s)));
+        assert_eq!(t, ["250 ms", "12.0 s", "10 min", "2.0 h", "3.0 days"]);
+        assert_eq!([512.0, 2.5e6, 3e9].map(bytes), ["512 B", "2 MB", "3.0 GB"]);
+        assert_eq!([512.0, 2.5e6].map(rate), ["512", "2.50 M"]);
+    }
+}

@@ -1,0 +1,152 @@
+//! What a run leaves behind.
+
+mod common;
+
+use common::{Bench, COLUMN};
+use moldwarp_io::output::{csv, vtu_read};
+
+fn state_hash(bench: &Bench, args: &[&str]) -> String {
+    let all: Vec<&str> = ["run", "column", "--force"]
+        .iter()
+        .chain(args)
+        .copied()
+        .collect();
+    bench.done(&all);
+    bench.summary("out/column")["state_hash"]
+        .as_str()
+        .unwrap()
+        .to_owned()
+}
+
+#[test]
+fn history_and_frames_are_read_back() {
+    let bench = Bench::new();
+    let said = bench.done(&["run", "column"]);
+    assert!(said.contains("frames:  out/column/particles.pvd"), "{said}");
+    assert!(said.contains("history: out/column/history.csv"), "{said}");
+    assert!(said.contains("energy:  residual "), "{said}");
+
+    let summary = bench.summary("out/column");
+    let particles = summary["particles"].as_u64().unwrap() as usize;
+    assert_eq!(summary["exit"], "done");
+    assert_eq!(summary["units"]["bottom.displacement.z"], "m");
+    assert!((summary["time"].as_f64().unwrap() - 0.2).abs() < 1e-12);
+
+    let history = csv::read(&bench.path("out/column/history.csv")).unwrap();
+    assert_eq!(
+        history.names[..5],
+        ["time", "stage", "stage_time", "step", "dt"]
+    );
+    let time = history.column("time").unwrap();
+    assert_eq!((time.len(), time[0]), (21, 0.0));
+    assert_eq!(time[20], summary["time"].as_f64().unwrap());
+    assert!(history.column("stage").unwrap().iter().all(|&s| s == 0.0));
+    for (i, &t) in time.iter().enumerate() {
+        let (due, dt) = (0.01 * i as f64, summary["max_dt"].as_f64().unwrap());
+        assert!(t >= due - 1e-9 && t < due + dt, "row {i} at {t} s");
+    }
+    assert!(history.column("bottom.displacement.z").unwrap()[20] < 0.0);
+    assert!(history.column("energy.kinetic").is_some());
+
+    let pvd = bench.read("out/column/particles.pvd");
+    assert_eq!(pvd.matches("<DataSet ").count(), 5);
+    let last = vtu_read::read(&bench.path("out/column/frames/particles_00004.vtu")).unwrap();
+    assert_eq!(last.time, time[20]);
+    assert_eq!(last.points.len(), particles);
+    let mut ids = last.field("id").unwrap().values.clone();
+    ids.sort_by(f64::total_cmp);
+    assert!(ids.iter().enumerate().all(|(i, &id)| id == i as f64));
+    assert_eq!(last.field("stress").unwrap().components, 6);
+    let pressure = &last.field("mean_pressure").unwrap().values;
+    assert!(
+        pressure.iter().sum::<f64>() > 0.0,
+        "compression is positive"
+    );
+    let mesh = vtu_read::read(&bench.path("out/column/frames/mesh_00004.vtu")).unwrap();
+    assert_eq!(
+        mesh.cell_nodes.len(),
+        4 * summary["elements"].as_u64().unwrap() as usize
+    );
+    let mass: f64 = mesh.field("mass").unwrap().values.iter().sum();
+    let expected = 0.1 * 0.1 * 0.5 * 18e3 / 9.81;
+    assert!((mass - expected).abs() < 1e-9 * expected);
+}
+
+#[test]
+fn the_state_does_not_depend_on_threads_or_output() {
+    let bench = Bench::new();
+    let one = state_hash(&bench, &["--threads", "1"]);
+    let scene = bench.summary("out/column")["scene_hash"].clone();
+    for others in [
+        &["--threads", "2"][..],
+        &["--threads", "8"],
+        &["--set", "output.frames=0", "--set", "output.history=1"],
+        &["--set", "output.frames=37"],
+    ] {
+        assert_eq!(one, state_hash(&bench, others), "{others:?}");
+        assert_eq!(scene, bench.summary("out/column")["scene_hash"]);
+    }
+    let other = state_hash(
+        &bench,
+        &["--set", "materials.soil.young_modulus=\"101 kPa\""],
+    );
+    assert_ne!(one, other);
+    assert_ne!(scene, bench.summary("out/column")["scene_hash"]);
+}
+
+#[test]
+fn no_frames_means_no_collection() {
+    let bench = Bench::new();
+    let said = bench.done(&["run", "column", "--set", "output.frames=0"]);
+    assert!(!said.contains("particles.pvd"));
+    assert!(!bench.path("out/column/particles.pvd").exists());
+    assert_eq!(
+        std::fs::read_dir(bench.path("out/column/frames"))
+            .unwrap()
+            .count(),
+        0
+    );
+    assert!(bench.read("out/column/scene.toml").contains("frames = 0"));
+}
+
+#[test]
+fn a_run_compared_with_itself_differs_by_nothing() {
+    let bench = Bench::new();
+    bench.done(&["run", "column"]);
+    let history = csv::read(&bench.path("out/column/history.csv")).unwrap();
+    let bottom = history.column("bottom.displacement.z").unwrap();
+    let peak = bottom.iter().fold(0.0, |p: f64, v| p.max(v.abs()));
+    let mut expected = "time,value\n".to_owned();
+    for (t, v) in history.column("time").unwrap().iter().zip(bottom) {
+        expected += &format!("{t:?},{v:?}\n");
+    }
+    bench.write("column/expected.csv", &expected);
+    let compare = "\n[[compare]]\ncolumn = \"bottom.displacement.z\"\nfile = \"expected.csv\"\n";
+    bench.write("column/scene.toml", &format!("{COLUMN}{compare}"));
+    let said = bench.done(&["run", "column"]);
+    assert!(
+        said.contains("bottom.displacement.z: at most 0 % of the peak away from expected.csv"),
+        "{said}"
+    );
+    let summary = bench.summary("out/column");
+    assert_eq!(summary["compare"][0]["relative_difference"], 0.0);
+    assert_eq!(summary["compare"][0]["reference_peak"], peak);
+}
+
+#[test]
+fn check_says_the_plan_and_writes_nothing() {
+    let bench = Bench::new();
+    let said = bench.done(&["check", "column", "--threads", "1"]);
+    for part in [
+        "A small column\n",
+        "mesh        30 elements, 24 nodes",
+        "body        `layer` of `soil`: 120 particles, 0.005 m3, 9.174 kg\n",
+        " steps to t = 0.2 s\n",
+        "with 1 thread (",
+        "in 5 frames",
+        "history     time stage stage_time step dt bottom.displacement.x ",
+    ] {
+        assert!(said.contains(part), "{part:?} is not in\n{said}");
+    }
+    assert!(!bench.path("out").exists());
+}

@@ -1,0 +1,172 @@
+//! What a run would be, without running it.
+
+use crate::run::{Expected, RunError, columns, end_time, frame_bytes};
+use crate::scene::{Every, Scene};
+use moldwarp::mesh::Quality;
+use moldwarp::plan::Until;
+use moldwarp::{Simulation, Stop};
+use std::time::{Duration, Instant};
+
+/// The plan of a run. SI units.
+#[derive(Debug)]
+pub struct Forecast {
+    pub title: String,
+    pub nodes: usize,
+    pub elements: usize,
+    pub particles: usize,
+    pub quality: Quality,
+    pub bodies: Vec<BodyForecast>,
+    /// The stable step at the start, s.
+    pub stable_time_step: f64,
+    /// The first step, s: the stable one unless another is forced.
+    pub time_step: f64,
+    /// Simulated time, s; an estimate where a stage is given in steps.
+    pub end: f64,
+    /// Steps, if all are as long as the first.
+    pub steps: u64,
+    /// Wall time in the step loop by the pace of a few trial steps, s.
+    pub wall_time: f64,
+    /// Particles times steps per second of the trial steps.
+    pub rate: f64,
+    /// Most memory that this process has held so far, trial steps included, bytes. Known on
+    /// Linux only.
+    pub memory: Option<u64>,
+    pub frames: u64,
+    /// Bytes of all frames and of the history.
+    pub disk: f64,
+    /// Columns of the history with their units.
+    pub columns: Vec<(String, String)>,
+    pub notes: Vec<String>,
+    /// A guard that stopped the trial steps.
+    pub stopped: Option<Stop>,
+}
+
+/// One body of the plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyForecast {
+    pub name: String,
+    pub material: String,
+    pub particles: usize,
+    /// m³.
+    pub volume: f64,
+    /// kg.
+    pub mass: f64,
+}
+
+/// Trial steps end after this time, or this number of steps.
+const TRIAL_TIME: Duration = Duration::from_secs(2);
+const TRIAL_STEPS: u64 = 20;
+
+/// Sets the scene up, makes a few trial steps and writes nothing.
+pub fn check(scene: Scene) -> Result<Forecast, RunError> {
+    let names: Vec<(String, String)> = {
+        let plan = &scene.plan;
+        let material = |b: &moldwarp::plan::Body| plan.materials[b.material].name.clone();
+        plan.bodies
+            .iter()
+            .map(|b| (b.name.clone(), material(b)))
+            .collect()
+    };
+    let title = scene.plan.title.clone();
+    let mut sim = Simulation::new(scene.plan)?;
+    let columns = columns(&sim);
+    Expected::read_all(&scene.compare, &columns)?;
+    let quality = sim.mesh().quality();
+    let bodies = bodies(&sim, names);
+    let stable_time_step = sim.stable_time_step();
+    let time_step = sim.next_time_step();
+    let end = end_time(&sim);
+    let steps = steps(&sim);
+    let particles = sim.particles().len();
+    let (nodes, elements) = (sim.mesh().nodes.len(), sim.mesh().tets.len());
+    let frames = outputs(scene.output.frames, end);
+    let rows = outputs(scene.output.history, end);
+    let frame = frame_bytes(particles, nodes, elements) as f64;
+    let disk = frames as f64 * frame + (rows as usize * columns.len() * 20) as f64;
+    let (pace, stopped) = trial(&mut sim);
+    Ok(Forecast {
+        title,
+        nodes,
+        elements,
+        particles,
+        quality,
+        bodies,
+        stable_time_step,
+        time_step,
+        end,
+        steps,
+        wall_time: steps as f64 * pace,
+        rate: particles as f64 / pace,
+        memory: peak_memory(),
+        frames,
+        disk,
+        columns,
+        notes: scene.notes,
+        stopped,
+    })
+}
+
+/// Steps of all stages, if they are as long as the first.
+fn steps(sim: &Simulation) -> u64 {
+    let stages = sim.plan().stages.iter();
+    stages
+        .map(|stage| match stage.until {
+            Until::Duration(duration) => (duration / sim.next_time_step()).ceil() as u64,
+            Until::Steps(steps) => steps,
+        })
+        .sum()
+}
+
+/// How often something is written in a run that ends at `end`, s: at 0, too.
+fn outputs(every: Every, end: f64) -> u64 {
+    match every {
+        Every::Count(0) => 0,
+        Every::Count(count) => u64::from(count) + 1,
+        Every::Interval(interval) => (end / interval).ceil() as u64 + 1,
+    }
+}
+
+/// Seconds a step, and the guard that stopped the trial.
+fn trial(sim: &mut Simulation) -> (f64, Option<Stop>) {
+    let start = Instant::now();
+    let mut made = 0;
+    while made < TRIAL_STEPS && start.elapsed() < TRIAL_TIME && !sim.finished() {
+        if let Err(stop) = sim.step() {
+            return (
+                start.elapsed().as_secs_f64() / (made + 1) as f64,
+                Some(stop),
+            );
+        }
+        made += 1;
+    }
+    (start.elapsed().as_secs_f64() / made.max(1) as f64, None)
+}
+
+fn bodies(sim: &Simulation, names: Vec<(String, String)>) -> Vec<BodyForecast> {
+    let mut bodies: Vec<BodyForecast> = names
+        .into_iter()
+        .map(|(name, material)| BodyForecast {
+            name,
+            material,
+            particles: 0,
+            volume: 0.0,
+            mass: 0.0,
+        })
+        .collect();
+    let p = sim.particles();
+    for (i, &body) in p.body.iter().enumerate() {
+        let body = &mut bodies[body as usize];
+        body.particles += 1;
+        body.volume += p.volume[i];
+        body.mass += p.mass[i];
+    }
+    bodies
+}
+
+/// The process's peak resident memory, bytes, where the system tells it as Linux does.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024)
+}

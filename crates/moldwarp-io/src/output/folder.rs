@@ -1,0 +1,246 @@
+//! The folder that a run writes into, and when it may.
+
+use super::FileError;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Present in the folder of a run that is over.
+const SUMMARY: &str = "summary.json";
+/// Present in the folder of every run that has begun.
+const LOG: &str = "run.log";
+/// Frames are in a folder of their own; the `.pvd` files beside it name them.
+const FRAMES: &str = "frames";
+/// Everything a run writes, by its name in the folder.
+const OURS: [&str; 8] = [
+    SUMMARY,
+    LOG,
+    FRAMES,
+    "scene.toml",
+    "history.csv",
+    "particles.pvd",
+    "mesh.pvd",
+    "report.html",
+];
+
+/// A folder that is ready for a run: it exists, and nothing of an earlier run is left in it but
+/// an emptied log.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    path: PathBuf,
+}
+
+/// Why a folder is not written into.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    #[error("{} holds a run that is not finished", .path.display())]
+    Unfinished { path: PathBuf },
+    #[error("{} holds files that are not moldwarp's, such as {}", .path.display(), .file.display())]
+    Foreign { path: PathBuf, file: PathBuf },
+    #[error("{} is the scene's own folder", .path.display())]
+    Scene { path: PathBuf },
+    #[error("{} is a file, not a folder", .path.display())]
+    NotAFolder { path: PathBuf },
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl FolderError {
+    /// What the user can do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            FolderError::Unfinished { .. } => {
+                "`--force` replaces it; `--out DIR` writes somewhere else"
+            }
+            FolderError::Foreign { .. } => {
+                "`--out DIR` writes somewhere else; `--force` writes beside them and leaves them as they are"
+            }
+            FolderError::Scene { .. } | FolderError::NotAFolder { .. } | FolderError::File(_) => {
+                "name another folder with `--out DIR`"
+            }
+        }
+    }
+}
+
+/// What stands in a folder before a run.
+#[derive(Debug, PartialEq)]
+enum Found {
+    Nothing,
+    Finished,
+    Unfinished,
+    Foreign(PathBuf),
+}
+
+impl Folder {
+    /// Where results go unless another folder is named: `out/<case>` under the current one.
+    pub fn default_path(case: &str) -> PathBuf {
+        Path::new("out").join(case)
+    }
+
+    /// Makes the folder ready. With `force`, an unfinished run is replaced like a finished one
+    /// and foreign files are put up with; they are never removed. `scene` is the folder of the
+    /// scene, which is never written into. True beside the folder: a finished run was replaced.
+    pub fn prepare(path: &Path, scene: &Path, force: bool) -> Result<(Folder, bool), FolderError> {
+        let named = || path.to_owned();
+        if path.exists() && !path.is_dir() {
+            return Err(FolderError::NotAFolder { path: named() });
+        }
+        if let (Ok(out), Ok(scene)) = (path.canonicalize(), scene.canonicalize())
+            && out == scene
+        {
+            return Err(FolderError::Scene { path: named() });
+        }
+        let found = look(path)?;
+        match found {
+            Found::Unfinished if !force => return Err(FolderError::Unfinished { path: named() }),
+            Found::Foreign(file) if !force => {
+                return Err(FolderError::Foreign {
+                    path: named(),
+                    file,
+                });
+            }
+            _ => {}
+        }
+        let log = path.join(LOG);
+        let replaced = log.exists();
+        clear(path)?;
+        let frames = path.join(FRAMES);
+        fs::create_dir_all(path).map_err(FileError::at("create", path))?;
+        // The log first: from here on the folder is known for an unfinished run.
+        fs::File::create(&log).map_err(FileError::at("create", &log))?;
+        fs::create_dir_all(&frames).map_err(FileError::at("create", &frames))?;
+        Ok((Folder { path: named() }, replaced))
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub fn scene(&self) -> PathBuf {
+        self.path.join("scene.toml")
+    }
+
+    pub fn log(&self) -> PathBuf {
+        self.path.join(LOG)
+    }
+
+    pub fn history(&self) -> PathBuf {
+        self.path.join("history.csv")
+    }
+
+    pub fn summary(&self) -> PathBuf {
+        self.path.join(SUMMARY)
+    }
+
+    /// The collection of a kind of frames, `particles` or `mesh`.
+    pub fn collection(&self, kind: &str) -> PathBuf {
+        self.path.join(format!("{kind}.pvd"))
+    }
+
+    /// A frame's path from this folder, with `/` between the parts.
+    pub fn frame(kind: &str, number: usize) -> String {
+        format!("{FRAMES}/{kind}_{number:05}.vtu")
+    }
+}
+
+fn look(path: &Path) -> Result<Found, FileError> {
+    if !path.exists() {
+        return Ok(Found::Nothing);
+    }
+    let mut names = Vec::new();
+    for entry in fs::read_dir(path).map_err(FileError::at("read", path))? {
+        names.push(entry.map_err(FileError::at("read", path))?.file_name());
+    }
+    names.sort();
+    let has = |name: &str| names.iter().any(|n| n == name);
+    let ours = |name: &std::ffi::OsString| {
+        // Without a log, even a file of a name of ours was not put there by a run.
+        let name = name.to_str().unwrap_or_default();
+        has(LOG) && OURS.contains(&name.strip_suffix(".part").unwrap_or(name))
+    };
+    Ok(if let Some(foreign) = names.iter().find(|n| !ours(n)) {
+        Found::Foreign(foreign.into())
+    } else if has(SUMMARY) {
+        Found::Finished
+    } else if has(LOG) {
+        Found::Unfinished
+    } else {
+        Found::Nothing
+    })
+}
+
+/// Removes what an earlier run wrote, and nothing else.
+fn clear(path: &Path) -> Result<(), FileError> {
+    if !path.join(LOG).exists() {
+        return Ok(());
+    }
+    let frames = path.join(FRAMES);
+    if frames.is_dir() {
+        for entry in fs::read_dir(&frames).map_err(FileError::at("read", &frames))? {
+            let file = entry.map_err(FileError::at("read", &frames))?.path();
+            if file.extension().is_some_and(|e| e == "vtu" || e == "part") {
+                fs::remove_file(&file).map_err(FileError::at("remove", &file))?;
+            }
+        }
+    }
+    for name in OURS.iter().filter(|&&n| n != FRAMES && n != LOG) {
+        for file in [path.join(name), path.join(format!("{name}.part"))] {
+            if file.exists() {
+                fs::remove_file(&file).map_err(FileError::at("remove", &file))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn prepare(path: &Path, force: bool) -> Result<bool, FolderError> {
+        Folder::prepare(path, Path::new("nowhere"), force).map(|(_, replaced)| replaced)
+    }
+
+    #[test]
+    fn a_finished_run_is_replaced_and_an_unfinished_one_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let out = dir.path().join("out/case");
+        assert!(!prepare(&out, false).unwrap());
+        for name in ["scene.toml", "history.csv", "frames/mesh_00000.vtu"] {
+            fs::write(out.join(name), "").unwrap();
+        }
+        let refused = prepare(&out, false).unwrap_err();
+        assert!(matches!(refused, FolderError::Unfinished { .. }));
+        assert!(out.join("history.csv").exists());
+
+        fs::write(out.join("summary.json"), "{}").unwrap();
+        assert!(prepare(&out, false).unwrap());
+        assert_eq!(fs::read_dir(&out).unwrap().count(), 2, "log and frames");
+        assert_eq!(fs::read_dir(out.join("frames")).unwrap().count(), 0);
+
+        assert!(prepare(&out, true).unwrap());
+    }
+
+    #[test]
+    fn foreign_files_are_refused_and_never_removed() {
+        let dir = tempfile::tempdir().unwrap();
+        let thesis = dir.path().join("thesis.tex");
+        fs::write(&thesis, "").unwrap();
+        let refused = prepare(dir.path(), false).unwrap_err();
+        assert!(matches!(&refused, FolderError::Foreign { file, .. } if file == "thesis.tex"));
+        assert!(!prepare(dir.path(), true).unwrap());
+        assert!(thesis.exists());
+    }
+
+    #[test]
+    fn the_scenes_folder_and_a_file_are_refused_even_by_force() {
+        let dir = tempfile::tempdir().unwrap();
+        let scene = dir.path().join("scene.toml");
+        fs::write(&scene, "").unwrap();
+        let own = Folder::prepare(dir.path(), dir.path(), true).unwrap_err();
+        assert!(matches!(own, FolderError::Scene { .. }));
+        let file = Folder::prepare(&scene, dir.path(), true).unwrap_err();
+        assert!(matches!(file, FolderError::NotAFolder { .. }));
+        let under = Folder::prepare(&scene.join("x"), dir.path(), true).unwrap_err();
+        assert!(matches!(under, FolderError::File(_)));
+    }
+}

@@ -1,0 +1,123 @@
+//! Fingerprints by which two scenes, or the final states of two runs, are told to be the same.
+
+use moldwarp::{Plan, Vec3};
+
+/// BLAKE3 over named arrays of little-endian values.
+///
+/// Names and lengths are part of what is hashed: moving a value from one array to the next, or
+/// renaming an array, gives another fingerprint.
+#[derive(Default)]
+pub struct Hasher(blake3::Hasher);
+
+impl Hasher {
+    pub fn new() -> Hasher {
+        Hasher::default()
+    }
+
+    /// Adds an array of numbers; -0 and 0 differ, as bits do.
+    pub fn floats(&mut self, name: &str, values: impl ExactSizeIterator<Item = f64>) {
+        self.begin(name, values.len());
+        values.for_each(|v| {
+            self.0.update(&v.to_le_bytes());
+        });
+    }
+
+    /// Adds an array of vectors.
+    pub fn vectors(&mut self, name: &str, values: impl ExactSizeIterator<Item = Vec3>) {
+        self.begin(name, values.len());
+        values.for_each(|v| {
+            v.to_array().iter().for_each(|x| {
+                self.0.update(&x.to_le_bytes());
+            });
+        });
+    }
+
+    /// Adds an array of whole numbers.
+    pub fn numbers(&mut self, name: &str, values: impl ExactSizeIterator<Item = u64>) {
+        self.begin(name, values.len());
+        values.for_each(|v| {
+            self.0.update(&v.to_le_bytes());
+        });
+    }
+
+    /// Adds a text.
+    pub fn text(&mut self, name: &str, text: &str) {
+        self.begin(name, text.len());
+        self.0.update(text.as_bytes());
+    }
+
+    /// The fingerprint in 64 hexadecimal digits.
+    pub fn finish(&self) -> String {
+        self.0.finalize().to_hex().to_string()
+    }
+
+    fn begin(&mut self, name: &str, count: usize) {
+        self.0.update(&(name.len() as u64).to_le_bytes());
+        self.0.update(name.as_bytes());
+        self.0.update(&(count as u64).to_le_bytes());
+    }
+}
+
+/// Fingerprint of everything that decides a simulation's result, with the mesh, without the
+/// output and the number of threads. It may change with moldwarp's version.
+pub fn scene_hash(plan: &Plan) -> String {
+    // Taken apart, so that a part added to the plan is not forgotten here.
+    let Plan {
+        title: _,
+        gravity,
+        mesh,
+        materials,
+        bodies,
+        boundaries,
+        loads,
+        probes,
+        numerics,
+        stages,
+    } = plan;
+    let mut h = Hasher::new();
+    h.vectors("nodes", mesh.nodes.iter().copied());
+    h.numbers("tets", mesh.tets.as_flattened().iter().map(|&n| n.into()));
+    for group in &mesh.volume_groups {
+        h.numbers(&group.name, group.elements.iter().map(|&e| e.into()));
+    }
+    for surface in &mesh.surfaces {
+        let face = |f: &moldwarp::mesh::Face| u64::from(f.element) << 8 | u64::from(f.local);
+        h.numbers(&surface.name, surface.faces.iter().map(face));
+    }
+    // Debug prints every f64 so that it reads back the same: no digit is lost.
+    h.text("gravity", &format!("{gravity:?}"));
+    h.text("materials", &format!("{materials:?}"));
+    h.text("bodies", &format!("{bodies:?}"));
+    h.text("boundaries", &format!("{boundaries:?}"));
+    h.text("loads", &format!("{loads:?}"));
+    h.text("probes", &format!("{probes:?}"));
+    h.text("numerics", &format!("{numerics:?}"));
+    h.text("stages", &format!("{stages:?}"));
+    h.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(add: impl Fn(&mut Hasher)) -> String {
+        let mut h = Hasher::new();
+        add(&mut h);
+        h.finish()
+    }
+
+    #[test]
+    fn names_lengths_and_bits_count() {
+        let base = of(|h| h.floats("a", [1.0, 2.0].into_iter()));
+        assert_eq!(base.len(), 64);
+        assert_eq!(base, of(|h| h.floats("a", [1.0, 2.0].into_iter())));
+        assert_ne!(base, of(|h| h.floats("b", [1.0, 2.0].into_iter())));
+        let split = of(|h| {
+            h.floats("a", [1.0].into_iter());
+            h.floats("", [2.0].into_iter());
+        });
+        assert_ne!(base, split);
+        let zero = of(|h| h.floats("a", [0.0].into_iter()));
+        assert_ne!(zero, of(|h| h.floats("a", [-0.0].into_iter())));
+    }
+}

@@ -1,0 +1,113 @@
+//! `summary.json`: a run in figures. A folder that has it holds a run that is over.
+
+use super::{FileError, write_whole};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use std::io::Write;
+use std::path::Path;
+
+/// What is kept of a run. SI units throughout.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Summary {
+    pub case: String,
+    pub title: String,
+    /// `done`, or why the run was stopped.
+    pub exit: String,
+    pub particles: usize,
+    pub elements: usize,
+    pub steps: u64,
+    /// Simulated time, s.
+    pub time: f64,
+    /// From the start of the program's run to its end, s.
+    pub wall_time: f64,
+    /// Particles times steps over the seconds spent in the step loop alone.
+    pub particle_steps_per_second: f64,
+    /// Least and greatest step taken, s; null before the first.
+    pub min_dt: Option<f64>,
+    pub max_dt: Option<f64>,
+    /// At the end, J, by kind.
+    #[serde(serialize_with = "in_order")]
+    pub energy: Vec<(String, f64)>,
+    /// The greatest half sum of the absolute physical terms, J: what to relate the others to.
+    pub energy_turned_over: f64,
+    pub compare: Vec<Compared>,
+    pub threads: usize,
+    pub version: String,
+    pub scene_hash: String,
+    pub state_hash: String,
+    /// Each column of the history with its unit.
+    #[serde(serialize_with = "in_order")]
+    pub units: Vec<(String, String)>,
+}
+
+/// A history against its reference.
+#[derive(Clone, Debug, Serialize)]
+pub struct Compared {
+    pub column: String,
+    /// As the scene names it.
+    pub file: String,
+    /// Greatest difference over the reference's peak; null if it is no number.
+    pub relative_difference: f64,
+    /// Greatest difference, in the column's unit.
+    pub greatest_difference: f64,
+    /// When it was reached, s.
+    pub at_time: f64,
+    /// The reference's greatest absolute value, in the column's unit.
+    pub reference_peak: f64,
+}
+
+/// Pairs as a JSON object that keeps their order.
+fn in_order<S: Serializer, T: Serialize>(
+    pairs: &[(String, T)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(pairs.len()))?;
+    for (key, value) in pairs {
+        map.serialize_entry(key, value)?;
+    }
+    map.end()
+}
+
+impl Summary {
+    /// Writes the file, whole or not at all.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        write_whole(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, self)?;
+            writeln!(out)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energies_and_units_keep_their_order() {
+        let summary = Summary {
+            case: "column".into(),
+            title: "A column".into(),
+            exit: "done".into(),
+            particles: 8,
+            elements: 6,
+            steps: 2,
+            time: 0.5,
+            wall_time: 1.0,
+            particle_steps_per_second: 16.0,
+            min_dt: Some(0.25),
+            max_dt: None,
+            energy: vec![("kinetic".into(), 1.0), ("elastic".into(), f64::NAN)],
+            energy_turned_over: 2.0,
+            compare: Vec::new(),
+            threads: 2,
+            version: "0.1.0".into(),
+            scene_hash: "0a".into(),
+            state_hash: "0b".into(),
+            units: vec![("time".into(), "s".into()), ("dt".into(), "s".into())],
+        };
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("summary.json");
+        summary.write(&path).unwrap();
+        insta::assert_snapshot!(std::fs::read_to_string(&path).unwrap());
+    }
+}

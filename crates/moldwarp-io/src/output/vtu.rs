@@ -1,0 +1,356 @@
+//! Frames for ParaView: VTK's XML unstructured grids with appended raw binary data.
+//!
+//! The header names every array with its offset into one block at the file's end, where each
+//! array stands as its length in bytes (UInt64) and its values, little endian. Nothing is
+//! encoded or compressed: a frame is written as fast as the disk takes it.
+
+use super::{FileError, write_whole};
+use moldwarp::Vec3;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// VTK's number of a single point.
+const VERTEX: u8 = 1;
+/// VTK's number of a four-node tetrahedron.
+const TETRA: u8 = 10;
+
+/// Names of a symmetric tensor's components: our order, which is VTK's too.
+const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+
+/// Values of an array, one entry a point (or cell).
+#[derive(Clone, Copy, Debug)]
+pub enum Data<'a> {
+    F64(&'a [f64]),
+    U64(&'a [u64]),
+    U32(&'a [u32]),
+    U16(&'a [u16]),
+    U8(&'a [u8]),
+    Vectors(&'a [Vec3]),
+    /// Symmetric tensors xx, yy, zz, xy, yz, zx.
+    Tensors(&'a [[f64; 6]]),
+    /// Cells' nodes, written as Int64.
+    Tets(&'a [[u32; 4]]),
+    /// first, first + step, … as Int64: what an offset array or a list of vertices is.
+    Steps {
+        first: i64,
+        step: i64,
+        count: usize,
+    },
+    /// The same byte over and over: the cells' type.
+    Same {
+        value: u8,
+        count: usize,
+    },
+}
+
+/// A named array.
+#[derive(Clone, Copy, Debug)]
+pub struct Array<'a> {
+    pub name: &'a str,
+    pub data: Data<'a>,
+    /// Unit, and sign convention where one is needed; kept as VTK's units label. May be empty.
+    pub description: &'a str,
+}
+
+impl<'a> Array<'a> {
+    pub fn new(name: &'a str, data: Data<'a>, description: &'a str) -> Array<'a> {
+        Array {
+            name,
+            data,
+            description,
+        }
+    }
+}
+
+impl Data<'_> {
+    fn type_name(&self) -> &'static str {
+        match self {
+            Data::F64(_) | Data::Vectors(_) | Data::Tensors(_) => "Float64",
+            Data::U64(_) => "UInt64",
+            Data::U32(_) => "UInt32",
+            Data::U16(_) => "UInt16",
+            Data::U8(_) | Data::Same { .. } => "UInt8",
+            Data::Tets(_) | Data::Steps { .. } => "Int64",
+        }
+    }
+
+    fn components(&self) -> usize {
+        match self {
+            Data::Vectors(_) => 3,
+            Data::Tensors(_) => 6,
+            _ => 1,
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Data::F64(v) => 8 * v.len(),
+            Data::U64(v) => 8 * v.len(),
+            Data::U32(v) => 4 * v.len(),
+            Data::U16(v) => 2 * v.len(),
+            Data::U8(v) => v.len(),
+            Data::Vectors(v) => 24 * v.len(),
+            Data::Tensors(v) => 48 * v.len(),
+            Data::Tets(v) => 32 * v.len(),
+            Data::Steps { count, .. } => 8 * count,
+            Data::Same { count, .. } => *count,
+        }
+    }
+
+    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        match *self {
+            Data::F64(v) => put(out, v, |x| x.to_le_bytes()),
+            Data::U64(v) => put(out, v, |x| x.to_le_bytes()),
+            Data::U32(v) => put(out, v, |x| x.to_le_bytes()),
+            Data::U16(v) => put(out, v, |x| x.to_le_bytes()),
+            Data::U8(v) => out.write_all(v),
+            Data::Vectors(v) => {
+                for x in v {
+                    put(out, &x.to_array(), |x| x.to_le_bytes())?;
+                }
+                Ok(())
+            }
+            Data::Tensors(v) => put(out, v.as_flattened(), |x| x.to_le_bytes()),
+            Data::Tets(v) => put(out, v.as_flattened(), |&n| i64::from(n).to_le_bytes()),
+            Data::Steps { first, step, count } => {
+                (0..count as i64).try_for_each(|i| out.write_all(&(first + i * step).to_le_bytes()))
+            }
+            Data::Same { value, count } => (0..count).try_for_each(|_| out.write_all(&[value])),
+        }
+    }
+}
+
+fn put<T, const N: usize>(
+    out: &mut impl Write,
+    values: &[T],
+    bytes: impl Fn(&T) -> [u8; N],
+) -> io::Result<()> {
+    values.iter().try_for_each(|v| out.write_all(&bytes(v)))
+}
+
+/// Writes points, each a cell of its own, with fields.
+///
+/// `positions` in m, `time` in s; every field has as many entries as there are points.
+pub fn write_points(
+    path: &Path,
+    time: f64,
+    positions: &[Vec3],
+    fields: &[Array],
+) -> Result<(), FileError> {
+    let count = positions.len();
+    let steps = |first| Data::Steps {
+        first,
+        step: 1,
+        count,
+    };
+    let cells = [
+        Array::new("connectivity", steps(0), ""),
+        Array::new("offsets", steps(1), ""),
+        Array::new(
+            "types",
+            Data::Same {
+                value: VERTEX,
+                count,
+            },
+            "",
+        ),
+    ];
+    write(path, time, positions, fields, &cells)
+}
+
+/// Writes a tetrahedral mesh with fields on its nodes.
+///
+/// `nodes` in m, `time` in s; every field has as many entries as there are nodes.
+pub fn write_mesh(
+    path: &Path,
+    time: f64,
+    nodes: &[Vec3],
+    tets: &[[u32; 4]],
+    fields: &[Array],
+) -> Result<(), FileError> {
+    let count = tets.len();
+    let offsets = Data::Steps {
+        first: 4,
+        step: 4,
+        count,
+    };
+    let cells = [
+        Array::new("connectivity", Data::Tets(tets), ""),
+        Array::new("offsets", offsets, ""),
+        Array::new(
+            "types",
+            Data::Same {
+                value: TETRA,
+                count,
+            },
+            "",
+        ),
+    ];
+    write(path, time, nodes, fields, &cells)
+}
+
+fn write(
+    path: &Path,
+    time: f64,
+    points: &[Vec3],
+    fields: &[Array],
+    cells: &[Array; 3],
+) -> Result<(), FileError> {
+    let time = [time];
+    let time = Array::new("TimeValue", Data::F64(&time), "s");
+    let points = Array::new("Points", Data::Vectors(points), "m");
+    let arrays: Vec<&Array> = [&time, &points]
+        .into_iter()
+        .chain(cells)
+        .chain(fields)
+        .collect();
+    let mut header = Header::default();
+    let time = header.array(&time, " NumberOfTuples=\"1\"");
+    let nodes = header.array(&points, "");
+    let cell_tags: String = cells.iter().map(|a| header.array(a, "")).collect();
+    let field_tags: String = fields.iter().map(|a| header.array(a, "")).collect();
+    let (point_count, cell_count) = (points.data.bytes() / 24, cells[2].data.bytes());
+    write_whole(path, |out| {
+        write!(
+            out,
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+             <UnstructuredGrid>\n<FieldData>\n{time}</FieldData>\n\
+             <Piece NumberOfPoints=\"{point_count}\" NumberOfCells=\"{cell_count}\">\n\
+             <PointData>\n{field_tags}</PointData>\n<Points>\n{nodes}</Points>\n\
+             <Cells>\n{cell_tags}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
+             <AppendedData encoding=\"raw\">\n_"
+        )?;
+        for array in &arrays {
+            out.write_all(&(array.data.bytes() as u64).to_le_bytes())?;
+            array.data.write(out)?;
+        }
+        write!(out, "\n</AppendedData>\n</VTKFile>\n")
+    })
+}
+
+/// Gives each array its offset, in the order in which they are asked for.
+#[derive(Default)]
+struct Header {
+    offset: usize,
+}
+
+impl Header {
+    fn array(&mut self, array: &Array, more: &str) -> String {
+        let Array {
+            name,
+            data,
+            description,
+        } = array;
+        let components: String = match data.components() {
+            1 => String::new(),
+            6 => TENSOR
+                .iter()
+                .enumerate()
+                .map(|(i, c)| format!(" ComponentName{i}=\"{c}\""))
+                .fold(" NumberOfComponents=\"6\"".into(), |all, c| all + &c),
+            n => format!(" NumberOfComponents=\"{n}\""),
+        };
+        let label = if description.is_empty() {
+            "/>\n".to_owned()
+        } else {
+            format!(
+                "><InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}</InformationKey></DataArray>\n",
+                escape(description)
+            )
+        };
+        let tag = format!(
+            "<DataArray type=\"{}\" Name=\"{}\"{components}{more} format=\"appended\" offset=\"{}\"{label}",
+            data.type_name(),
+            escape(name),
+            self.offset
+        );
+        self.offset += 8 + data.bytes();
+        tag
+    }
+}
+
+/// Text as XML has it.
+pub(super) fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::vtu_read::read;
+
+    #[test]
+    fn particles_are_read_back() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("p.vtu");
+        let x = [Vec3::new(0.1, -2.0, 1e-300), Vec3::ONE];
+        let stress = [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [-0.5; 6]];
+        let fields = [
+            Array::new("id", Data::U32(&[7, 9]), ""),
+            Array::new("seed", Data::U64(&[1 << 40, 2]), ""),
+            Array::new("body", Data::U16(&[0, 300]), ""),
+            Array::new("filled", Data::U8(&[1, 0]), ""),
+            Array::new(
+                "mean_pressure",
+                Data::F64(&[5.0, -0.25]),
+                "Pa, < 0 & \"pulled\"",
+            ),
+            Array::new("stress", Data::Tensors(&stress), "Pa"),
+        ];
+        write_points(&path, 0.125, &x, &fields).unwrap();
+
+        let frame = read(&path).unwrap();
+        assert_eq!(frame.time, 0.125);
+        assert_eq!(frame.points, x.map(|x| x.to_array()));
+        assert_eq!(frame.cell_nodes, [0, 1]);
+        assert_eq!(frame.field("id").unwrap().values, [7.0, 9.0]);
+        assert_eq!(frame.field("seed").unwrap().values, [2f64.powi(40), 2.0]);
+        assert_eq!(frame.field("body").unwrap().values, [0.0, 300.0]);
+        assert_eq!(frame.field("filled").unwrap().values, [1.0, 0.0]);
+        assert_eq!(frame.field("mean_pressure").unwrap().values, [5.0, -0.25]);
+        let read_stress = frame.field("stress").unwrap();
+        assert_eq!(read_stress.components, 6);
+        assert_eq!(read_stress.values, stress.as_flattened());
+        assert!(frame.field("strain").is_none());
+    }
+
+    #[test]
+    fn a_mesh_is_read_back() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("m.vtu");
+        let mesh = moldwarp::mesh::box_mesh(Vec3::ONE, [1, 2, 1]).unwrap();
+        let mass: Vec<f64> = mesh.nodes.iter().map(|x| x.y).collect();
+        let fields = [
+            Array::new("mass", Data::F64(&mass), "kg"),
+            Array::new("velocity", Data::Vectors(&mesh.nodes), "m/s"),
+        ];
+        write_mesh(&path, 3.0, &mesh.nodes, &mesh.tets, &fields).unwrap();
+
+        let frame = read(&path).unwrap();
+        assert_eq!(frame.points.len(), mesh.nodes.len());
+        let nodes: Vec<i64> = mesh.tets.iter().flatten().map(|&n| i64::from(n)).collect();
+        assert_eq!(frame.cell_nodes, nodes);
+        assert_eq!(frame.field("mass").unwrap().values, mass);
+        assert_eq!(frame.field("velocity").unwrap().components, 3);
+    }
+
+    #[test]
+    fn no_points_at_all_is_still_a_frame() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("none.vtu");
+        write_points(
+            &path,
+            0.0,
+            &[],
+            &[Array::new("v", Data::Vectors(&[]), "m/s")],
+        )
+        .unwrap();
+        let frame = read(&path).unwrap();
+        assert!(frame.points.is_empty());
+        assert_eq!(frame.field("v").unwrap().components, 3);
+    }
+}

@@ -1,0 +1,146 @@
+//! `history.csv`: the columns of a simulation and its rows.
+
+use super::RunError;
+use crate::output::compare::{difference, reference_peak};
+use crate::output::csv::{self, Writer};
+use crate::output::summary::Compared;
+use crate::output::{FileError, Folder};
+use crate::scene::Compare;
+use moldwarp::Simulation;
+use moldwarp::measure::Energies;
+
+/// Columns that every history begins with, with their units; stages are counted from 0.
+const FIRST: [(&str, &str); 5] = [
+    ("time", "s"),
+    ("stage", ""),
+    ("stage_time", "s"),
+    ("step", ""),
+    ("dt", "s"),
+];
+
+/// A history's columns with their units, in order.
+pub(crate) fn columns(sim: &Simulation) -> Vec<(String, String)> {
+    let first = FIRST.map(|(name, unit)| (name.to_owned(), unit.to_owned()));
+    let probes = sim.probe_columns().into_iter();
+    let energies = Energies::NAMES.map(|name| (format!("energy.{name}"), "J".to_owned()));
+    first
+        .into_iter()
+        .chain(probes.map(|(name, unit)| (name, unit.to_owned())))
+        .chain(energies)
+        .collect()
+}
+
+/// An expected history and the values to be compared with it.
+#[derive(Debug)]
+pub(crate) struct Expected {
+    column: usize,
+    name: String,
+    file: String,
+    reference: Vec<(f64, f64)>,
+    /// Time in s, value.
+    seen: Vec<(f64, f64)>,
+}
+
+impl Expected {
+    /// Reads the reference of every comparison and finds its column.
+    pub fn read_all(
+        compare: &[Compare],
+        columns: &[(String, String)],
+    ) -> Result<Vec<Expected>, RunError> {
+        compare.iter().map(|c| Expected::read(c, columns)).collect()
+    }
+
+    fn read(compare: &Compare, columns: &[(String, String)]) -> Result<Expected, RunError> {
+        let column = columns
+            .iter()
+            .position(|c| c.0 == compare.column)
+            .ok_or_else(|| RunError::NoSuchColumn {
+                column: compare.column.clone(),
+            })?;
+        let table = csv::read(&compare.file)?;
+        let [times, values, ..] = &table.columns[..] else {
+            return Err(RunError::OneColumn {
+                file: compare.file.clone(),
+            });
+        };
+        let reference: Vec<(f64, f64)> =
+            times.iter().copied().zip(values.iter().copied()).collect();
+        reference_peak(&reference).map_err(|problem| RunError::Reference {
+            file: compare.file.clone(),
+            problem,
+        })?;
+        Ok(Expected {
+            column,
+            name: compare.column.clone(),
+            file: compare
+                .file
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            reference,
+            seen: Vec::new(),
+        })
+    }
+
+    /// How far the history was from what was expected; a problem as a sentence.
+    pub fn compared(&self) -> Result<Compared, String> {
+        let d = difference(self.seen.iter().copied(), &self.reference)
+            .map_err(|e| format!("{} is not compared with {}: {e}", self.name, self.file))?;
+        Ok(Compared {
+            column: self.name.clone(),
+            file: self.file.clone(),
+            relative_difference: d.relative(),
+            greatest_difference: d.greatest,
+            at_time: d.time,
+            reference_peak: d.peak,
+        })
+    }
+}
+
+/// The history that is being written.
+#[derive(Debug)]
+pub(crate) struct History {
+    writer: Writer,
+    row: Vec<f64>,
+    pub expected: Vec<Expected>,
+}
+
+impl History {
+    pub fn create(
+        folder: &Folder,
+        columns: &[(String, String)],
+        expected: Vec<Expected>,
+    ) -> Result<History, FileError> {
+        let names: Vec<&str> = columns.iter().map(|c| c.0.as_str()).collect();
+        Ok(History {
+            writer: Writer::create(&folder.history(), &names)?,
+            row: Vec::new(),
+            expected,
+        })
+    }
+
+    /// Adds the simulation as it is now.
+    pub fn write(&mut self, sim: &Simulation) -> Result<(), FileError> {
+        // All stages done: the last row still belongs to the last stage.
+        let stage = sim.stage().min(sim.plan().stages.len() - 1);
+        self.row.clear();
+        self.row.extend([
+            sim.time(),
+            stage as f64,
+            sim.stage_time(),
+            sim.steps() as f64,
+            sim.time_step(),
+        ]);
+        sim.probe_values(&mut self.row);
+        self.row.extend(sim.energies().values());
+        for expected in &mut self.expected {
+            expected.seen.push((sim.time(), self.row[expected.column]));
+        }
+        self.writer.row(&self.row)
+    }
+
+    pub fn finish(&mut self) -> Result<(), FileError> {
+        self.writer.finish()
+    }
+}

@@ -224,7 +224,7 @@ mod tests {
         fold(all, 1, &|one: ByCell<&mut [u32]>| {
             let (from, to) = (one.offsets[one.cells.start], one.offsets[one.cells.end]);
             assert_eq!(
-                one.particles.iter().copied().collect::<Vec<_>>(),
+                one.particles.to_vec(),
                 (from..to).collect::<Vec<_>>()
             );
         });

@@ -60,7 +60,9 @@ impl Constraints {
     /// Gathers the boundaries of each node. Single directions are held first, then rollers in the
     /// order of the scene; what a direction shares with those before it is left out.
     pub fn new(mesh: &Mesh, boundaries: &[Boundary]) -> Constraints {
-        let mut axes: Vec<(u32, [Option<(f64, usize)>; 3])> = Vec::new();
+        // Speed and function of each direction that is given.
+        type Components = [Option<(f64, usize)>; 3];
+        let mut axes: Vec<(u32, Components)> = Vec::new();
         let mut functions = vec![Function::Constant];
         for boundary in boundaries {
             let components = match &boundary.kind {

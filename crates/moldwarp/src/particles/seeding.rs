@@ -7,7 +7,7 @@ use crate::plan::{Body, NamedMaterial, Place, Seeding};
 
 /// Distance from centroid to corner at which the four-point rule, exact for quadratics, sits:
 /// barycentric coordinates (1+3s)/4 and (1−s)/4 thrice, s = 1/√5.
-const FOUR: f64 = 0.447_213_595_499_957_94;
+const FOUR: f64 = 0.447_213_595_499_957_9;
 /// The ten nodes of a quadratic tetrahedron drawn towards the centroid by 1/√3: with equal
 /// weights they integrate quadratics exactly.
 const TEN: f64 = 0.577_350_269_189_625_8;

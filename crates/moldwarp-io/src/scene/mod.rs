@@ -114,6 +114,9 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
         false => path.to_owned(),
     };
     let mut name = file.display().to_string();
+    if file.is_file() && file.extension().is_some_and(|e| e == "msh" || e == "geo") {
+        return Err(not_a_scene(&file));
+    }
     let original = std::fs::read_to_string(&file).map_err(|e| unreadable(&name, path, &e))?;
     let (text, overrides) =
         overrides::apply(&original, sets).map_err(|fault| fault.in_file(&name, &original))?;
@@ -135,15 +138,32 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
     }
 }
 
+const WHAT_A_SCENE_IS: &str = "a scene is a TOML file, or a folder that holds scene.toml";
+
+fn not_a_scene(file: &Path) -> SceneError {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let mesh = Path::new(&*name).with_extension("msh");
+    Fault::new(format!("`{}` is of Gmsh, not a scene", file.display()))
+        .help(format!(
+            "a scene names its mesh, as with `file = \"{}\"` under `[mesh]`; {}",
+            mesh.display(),
+            syntax::BEGIN
+        ))
+        .without_file()
+}
+
 fn unreadable(name: &str, path: &Path, error: &std::io::Error) -> SceneError {
     let fault = match error.kind() {
         std::io::ErrorKind::NotFound if path.is_dir() => {
             Fault::new(format!("there is no scene in `{}`", path.display()))
                 .help("a scene's folder holds a file scene.toml; name another file directly")
         }
-        std::io::ErrorKind::NotFound => Fault::new(format!("there is no scene `{name}`"))
-            .help("a scene is a TOML file, or a folder that holds scene.toml"),
-        _ => Fault::new(format!("the scene `{name}` cannot be read: {error}")),
+        std::io::ErrorKind::NotFound => {
+            Fault::new(format!("there is no scene `{name}`")).help(WHAT_A_SCENE_IS)
+        }
+        _ => {
+            Fault::new(format!("the scene `{name}` cannot be read: {error}")).help(WHAT_A_SCENE_IS)
+        }
     };
     fault.without_file()
 }

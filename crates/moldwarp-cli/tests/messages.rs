@@ -69,7 +69,7 @@ fn materials_and_names() {
         with(
             "two bodies that overlap",
             "[[loads]]",
-            "[bodies.fill]\nregion = { centre = [0, 0, 0], radius = \"20 cm\" }\n\
+            "[bodies.fill]\nregion = { kind = \"sphere\", centre = [0, 0, 0], radius = \"20 cm\" }\n\
              material = \"soil\"\n\n[[loads]]",
         ),
         with(

@@ -5,6 +5,7 @@ mod check;
 mod exit;
 mod new;
 mod progress;
+mod report;
 mod run;
 mod text;
 
@@ -15,6 +16,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    report::install();
     let done = match Args::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),

@@ -21,14 +21,6 @@ fn wrong_arguments_and_scenes_write_nothing() {
 }
 
 #[test]
-fn a_misspelt_key_is_shown_in_its_place() {
-    let bench = Bench::with(&COLUMN.replace("young_modulus", "yuong_modulus"));
-    let said = bench.fails(2, &["run", "column"]);
-    assert!(said.contains("column/scene.toml:10"), "{said}");
-    assert!(said.contains("young_modulus"), "{said}");
-}
-
-#[test]
 fn a_reference_that_cannot_serve_is_refused_before_the_run() {
     let compare = "\n[[compare]]\ncolumn = \"bottom.displacement.z\"\nfile = \"exact.csv\"\n";
     let bench = Bench::with(&format!("{COLUMN}{compare}"));

@@ -95,6 +95,52 @@ fn the_state_does_not_depend_on_threads_or_output() {
 }
 
 #[test]
+fn the_state_does_not_depend_on_threads_on_an_unstructured_mesh() {
+    let scene = COLUMN
+        .replace(
+            "box = { size = [\"0.1 m\", \"0.1 m\", \"0.5 m\"], cells = [1, 1, 5] }",
+            "file = \"column.msh\"",
+        )
+        .replace("volume = \"box\"", "volume = \"soil\"")
+        .replace("\"z-min\"", "\"bottom\"")
+        .replace("\"z-max\"", "\"top\"")
+        .replace("0.2 s", "0.1 s");
+    let bench = Bench::with(&scene);
+    let mesh = include_str!("../../../examples/absorbing-column/column.msh");
+    bench.write("column/column.msh", mesh);
+    let one = state_hash(&bench, &["--threads", "1"]);
+    assert!(bench.summary("out/column")["elements"].as_u64().unwrap() > 300);
+    for threads in ["2", "8"] {
+        assert_eq!(
+            one,
+            state_hash(&bench, &["--threads", threads]),
+            "{threads}"
+        );
+    }
+    let lumped = state_hash(&bench, &["--set", "numerics.mass=lumped"]);
+    assert_ne!(one, lumped);
+
+    // Elements are named as Gmsh names them.
+    let said = bench.done(&["check", "column"]);
+    let line = said
+        .lines()
+        .find(|l| l.contains("shortest altitude"))
+        .unwrap();
+    assert!(!line.contains("counted from 0"), "{line}");
+    let tag = line
+        .split("(element ")
+        .nth(1)
+        .unwrap()
+        .split(')')
+        .next()
+        .unwrap();
+    let record = format!("\n{tag} ");
+    let elements = mesh.split("$Elements").nth(1).unwrap();
+    assert!(elements.contains(&record), "{line}");
+    assert!(bench.read("out/column/run.log").contains(line.trim()));
+}
+
+#[test]
 fn no_frames_means_no_collection() {
     let bench = Bench::new();
     let said = bench.done(&["run", "column", "--set", "output.frames=0"]);
@@ -139,7 +185,8 @@ fn check_says_the_plan_and_writes_nothing() {
     let said = bench.done(&["check", "column", "--threads", "1"]);
     for part in [
         "A small column\n",
-        "mesh        30 elements, 24 nodes",
+        "mesh        30 elements, 24 nodes, mean edge 0.126 m\n",
+        "shortest altitude 0.07071 m (element 12, counted from 0), worst edge over altitude 2.449 (",
         "body        `layer` of `soil`: 120 particles, 0.005 m3, 9.174 kg\n",
         " steps to t = 0.2 s\n",
         "with 1 thread (",

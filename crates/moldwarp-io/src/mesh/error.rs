@@ -47,13 +47,16 @@ impl fmt::Display for Place {
 /// `command` is what a user types to put it right.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GmshProblem {
-    #[error("not a Gmsh mesh, which begins with `$MeshFormat`; this begins with {found}{advice}")]
+    #[error("a Gmsh mesh begins with `$MeshFormat`, this with {found}{advice}")]
     NotGmsh { found: String, advice: String },
     #[error("MSH format {version}; 2.2 and 4.1 can be read: `{command}`")]
     Version { version: String, command: String },
     #[error("expected {expected}, found {found}")]
     Expected { expected: String, found: String },
-    #[error("the file claims {count} {what}, but only {room} bytes follow; it may be cut short")]
+    #[error(
+        "the file claims {count} {what}, but only {room} bytes follow; it may be cut short: copy it \
+         again or mesh it again"
+    )]
     TooMany {
         count: u64,
         what: &'static str,

@@ -1,5 +1,6 @@
 //! A mesh's faults in the numbers of the file it was read from.
 
+use crate::text::number;
 use moldwarp::mesh::MeshError;
 
 /// What Gmsh can do about bad elements.
@@ -35,7 +36,10 @@ pub fn explain_mesh_error(error: &MeshError, node_tags: &[u64], element_tags: &[
             others,
         } => {
             let (e, others) = (element(*e), more(*others));
-            format!("element {e} is inverted, its volume is {volume:e} m³{others}; {MESH_AGAIN}")
+            format!(
+                "element {e} is inverted, its volume is {} m³{others}; {MESH_AGAIN}",
+                number(*volume)
+            )
         }
         MeshError::Flat {
             element: e,
@@ -43,7 +47,10 @@ pub fn explain_mesh_error(error: &MeshError, node_tags: &[u64], element_tags: &[
             others,
         } => {
             let (e, others) = (element(*e), more(*others));
-            format!("element {e} is flat, its volume is {volume:e} m³{others}; {MESH_AGAIN}")
+            format!(
+                "element {e} is flat, its volume is {} m³{others}; {MESH_AGAIN}",
+                number(*volume)
+            )
         }
         MeshError::FaceShared { nodes, elements } => {
             let elements: Vec<String> = elements.iter().map(|&e| element(e as usize)).collect();
@@ -99,7 +106,7 @@ mod tests {
                 volume: -0.5,
                 others: 2
             }),
-            "element 9 is inverted, its volume is -5e-1 m³ (and 2 more); mesh the geometry again \
+            "element 9 is inverted, its volume is -0.5 m³ (and 2 more); mesh the geometry again \
              with Mesh.Optimize = 1 in the .geo, or with `gmsh -3 -optimize`"
         );
         assert_eq!(
@@ -108,7 +115,7 @@ mod tests {
                 volume: 0.0,
                 others: 0
             }),
-            "element 7 is flat, its volume is 0e0 m³; mesh the geometry again with \
+            "element 7 is flat, its volume is 0 m³; mesh the geometry again with \
              Mesh.Optimize = 1 in the .geo, or with `gmsh -3 -optimize`"
         );
         assert_eq!(

@@ -118,6 +118,9 @@ pub enum RunError {
         problem: crate::output::compare::CompareError,
     },
     #[error(transparent)]
+    #[diagnostic(help(
+        "a reference is a table of numbers, time and value, under a header row such as `time,value`"
+    ))]
     Csv(#[from] CsvError),
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy()))]

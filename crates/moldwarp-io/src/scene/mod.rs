@@ -33,6 +33,7 @@ pub use error::SceneError;
 pub use output::{Compare, Every, OutputSettings};
 
 use error::Fault;
+use moldwarp::particles::SeedingError;
 use moldwarp::step::TimeStepError;
 use moldwarp::{Plan, SetupError};
 use quantity::Dimension;
@@ -70,6 +71,8 @@ pub(crate) struct Origin {
     name: String,
     overrides: Vec<overrides::Override>,
     time_step: Option<Range<usize>>,
+    /// Names of bodies and where they stand.
+    bodies: Vec<(String, Range<usize>)>,
 }
 
 impl Origin {
@@ -80,9 +83,21 @@ impl Origin {
             (SetupError::TimeStep(TimeStepError::AboveStable { .. }), Some(place)) => {
                 above_stable(error, place)
             }
+            (SetupError::Seeding(SeedingError::Overlap { first, second, .. }), _) => {
+                self.overlap(first, second)
+            }
             _ => Fault::new(error.to_string()),
         };
         overrides::blame(fault, text, &self.overrides).in_file(&self.name, text)
+    }
+
+    fn overlap(&self, first: &str, second: &str) -> Fault {
+        let fault = Fault::new(format!("bodies `{first}` and `{second}` overlap"))
+            .help("a place can hold one body only: shrink or move the region of one of them");
+        let places = self.bodies.iter().filter(|b| b.0 == first || b.0 == second);
+        places.fold(fault, |fault, (_, place)| {
+            fault.at(place.clone(), "shares elements with the other")
+        })
     }
 }
 
@@ -114,6 +129,9 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
         false => path.to_owned(),
     };
     let mut name = file.display().to_string();
+    if file.is_file() && file.extension().is_some_and(|e| e == "msh" || e == "geo") {
+        return Err(not_a_scene(&file));
+    }
     let original = std::fs::read_to_string(&file).map_err(|e| unreadable(&name, path, &e))?;
     let (text, overrides) =
         overrides::apply(&original, sets).map_err(|fault| fault.in_file(&name, &original))?;
@@ -135,15 +153,36 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
     }
 }
 
+const WHAT_A_SCENE_IS: &str = "a scene is a TOML file, or a folder that holds scene.toml";
+
+fn not_a_scene(file: &Path) -> SceneError {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let what = match file.extension() {
+        Some(e) if e == "geo" => "Gmsh geometry",
+        _ => "Gmsh mesh",
+    };
+    let mesh = Path::new(&*name).with_extension("msh");
+    Fault::new(format!("`{}` is a {what}, not a scene", file.display()))
+        .help(format!(
+            "a scene names its mesh, as with `file = \"{}\"` under `[mesh]`; {}",
+            mesh.display(),
+            syntax::BEGIN
+        ))
+        .without_file()
+}
+
 fn unreadable(name: &str, path: &Path, error: &std::io::Error) -> SceneError {
     let fault = match error.kind() {
         std::io::ErrorKind::NotFound if path.is_dir() => {
             Fault::new(format!("there is no scene in `{}`", path.display()))
                 .help("a scene's folder holds a file scene.toml; name another file directly")
         }
-        std::io::ErrorKind::NotFound => Fault::new(format!("there is no scene `{name}`"))
-            .help("a scene is a TOML file, or a folder that holds scene.toml"),
-        _ => Fault::new(format!("the scene `{name}` cannot be read: {error}")),
+        std::io::ErrorKind::NotFound => {
+            Fault::new(format!("there is no scene `{name}`")).help(WHAT_A_SCENE_IS)
+        }
+        _ => {
+            Fault::new(format!("the scene `{name}` cannot be read: {error}")).help(WHAT_A_SCENE_IS)
+        }
     };
     fault.without_file()
 }
@@ -189,6 +228,12 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         element_tags,
         origin: Origin {
             time_step: values::span(&raw.numerics.time_step),
+            bodies: raw
+                .bodies
+                .0
+                .iter()
+                .map(|(name, _)| (name.get_ref().clone(), name.span()))
+                .collect(),
             ..Origin::default()
         },
     })

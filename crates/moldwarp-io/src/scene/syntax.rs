@@ -8,11 +8,18 @@ use toml::de::{DeTable, DeValue};
 
 const VERSION: &str = "1";
 
+/// How to come by a scene.
+pub(super) const BEGIN: &str =
+    "`moldwarp new absorbing-column DIR` writes an example to begin with";
+
 /// Reads the scene's shape. The version comes first: the keys of another one would only confuse.
 pub(super) fn parse(text: &str) -> Result<RawScene, Fault> {
     let table = table(text)?;
+    if table.is_empty() {
+        return Err(Fault::new("the scene is empty").help(BEGIN));
+    }
     check_version(&table)?;
-    let deserializer = toml::Deserializer::parse(text).map_err(|e| not_toml(&e))?;
+    let deserializer = toml::Deserializer::parse(text).map_err(|e| not_toml(&e, text))?;
     RawScene::deserialize(deserializer).map_err(|e| explain(&e))
 }
 
@@ -20,17 +27,31 @@ pub(super) fn parse(text: &str) -> Result<RawScene, Fault> {
 pub(super) fn table(text: &str) -> Result<DeTable<'_>, Fault> {
     match DeTable::parse(text) {
         Ok(table) => Ok(table.into_inner()),
-        Err(e) => Err(not_toml(&e)),
+        Err(e) => Err(not_toml(&e, text)),
     }
 }
 
-fn not_toml(error: &toml::de::Error) -> Fault {
-    let fault = Fault::new("the scene is not valid TOML")
-        .help("TOML is `key = value` under `[table]` headers; texts stand in double quotes");
-    match error.span() {
-        Some(span) => fault.at(span, error.message().to_owned()),
-        None => fault,
+fn not_toml(error: &toml::de::Error, text: &str) -> Fault {
+    let Some(span) = error.span() else {
+        return Fault::new("the scene is not valid TOML").help(error.message());
+    };
+    let there = text.get(span.clone()).unwrap_or_default();
+    if error.message() == "duplicate key" {
+        return Fault::new(format!("`{there}` is given twice"))
+            .at(span, "for the second time")
+            .help("keep one of the two; what belongs to one table stands under one header");
     }
+    let rest = text.get(span.start..).and_then(|rest| rest.lines().next());
+    let nothing_follows = rest.is_none_or(|rest| rest.trim().is_empty());
+    let label = match text.get(..span.start) {
+        Some(before) if nothing_follows && before.trim_end_matches([' ', '\t']).ends_with('=') => {
+            "a value is missing"
+        }
+        _ => error.message(),
+    };
+    Fault::new("the scene is not valid TOML")
+        .at(span, label)
+        .help("TOML is `key = value` under `[table]` headers; texts stand in double quotes")
 }
 
 fn check_version(table: &DeTable) -> Result<(), Fault> {

@@ -59,17 +59,17 @@ fn huge_counts_are_refused_at_once() {
     assert_eq!(
         refusal(V22.replace("$Nodes\n5", &format!("$Nodes\n{many}"))),
         "mesh.msh, line 10: the file claims 1000000000000 nodes, but only 151 bytes follow; it \
-         may be cut short"
+         may be cut short: copy it again or mesh it again"
     );
     assert_eq!(
         refusal(V22.replace("$Elements\n4", &format!("$Elements\n{many}"))),
         "mesh.msh, line 18: the file claims 1000000000000 elements, but only 84 bytes follow; it \
-         may be cut short"
+         may be cut short: copy it again or mesh it again"
     );
     assert_eq!(
         refusal(V41.replace("2 5 10 99", &format!("2 {many} 10 99"))),
         "mesh.msh, line 16: the file claims 1000000000000 nodes, but only 180 bytes follow; it \
-         may be cut short"
+         may be cut short: copy it again or mesh it again"
     );
     let mut bytes = write::v41(false);
     let at = bytes.windows(8).position(|w| w == b"\n$Nodes\n").unwrap() + 8;
@@ -77,7 +77,7 @@ fn huge_counts_are_refused_at_once() {
     assert_eq!(
         refusal(bytes),
         "mesh.msh, byte 356: the file claims 1000000000000 nodes, but only 495 bytes follow; it \
-         may be cut short"
+         may be cut short: copy it again or mesh it again"
     );
 }
 
@@ -92,6 +92,6 @@ fn garbage_is_refused() {
         b"$\n",
     ] {
         let message = parse(bytes).unwrap_err();
-        assert!(message.contains("not a Gmsh mesh"), "{message}");
+        assert!(message.contains("a Gmsh mesh begins with"), "{message}");
     }
 }

@@ -52,7 +52,7 @@ fn a_missing_file_is_made_from_its_geometry_or_sought_among_others() {
     );
     assert_eq!(
         message("column.geo"),
-        "column.geo, line 1: not a Gmsh mesh, which begins with `$MeshFormat`; this begins with \
+        "column.geo, line 1: a Gmsh mesh begins with `$MeshFormat`, this with \
          `// A column`; mesh it with `gmsh -3 column.geo -o column.msh`"
     );
     fs::create_dir(folder.path().join("dir.msh")).unwrap();
@@ -79,7 +79,7 @@ fn other_versions_are_converted_by_gmsh() {
 fn a_wrong_header_is_refused() {
     assert_eq!(
         refusal("solid cube\nfacet"),
-        "mesh.msh, line 1: not a Gmsh mesh, which begins with `$MeshFormat`; this begins with \
+        "mesh.msh, line 1: a Gmsh mesh begins with `$MeshFormat`, this with \
          `solid cube`"
     );
     assert_eq!(
@@ -314,7 +314,7 @@ fn binary_faults_are_placed_by_their_byte() {
     assert_eq!(
         refusal(&whole[..whole.len() - 140]),
         "mesh.msh, byte 271: the file claims 4 elements, but only 10 bytes follow; it may be cut \
-         short"
+         short: copy it again or mesh it again"
     );
     let at = whole.windows(10).position(|w| w == b"$Elements\n").unwrap() + 12;
     assert_eq!(

@@ -9,7 +9,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 pub enum TimeStepError {
     #[error(
-        "the forced time step of {forced:e} s is above the stable one, {stable:.3e} s at Courant \
+        "the forced time step of {forced:?} s is above the stable one, {stable:.3e} s at Courant \
          number {courant}: force a smaller one, or none"
     )]
     AboveStable {

@@ -4,6 +4,7 @@
 //! a minute and is tested; `fine` shows convergence and takes what it needs.
 
 pub mod cases;
+pub mod example;
 pub mod exact;
 mod plot;
 mod report;

@@ -1,6 +1,7 @@
 //! `moldwarp-validation coarse|fine [CASE]`: computes the cases and writes their tables and plots.
+//! `exact` writes the exact histories of the examples, `pictures` draws the examples' plots.
 
-use moldwarp_validation::{Fidelity, cases};
+use moldwarp_validation::{Fidelity, cases, example};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -10,6 +11,8 @@ fn main() -> ExitCode {
     let fidelity = match arguments.first().map(String::as_str) {
         Some("coarse") => Fidelity::Coarse,
         Some("fine") => Fidelity::Fine,
+        Some("exact") => return written(example::write_exact().map_err(Into::into)),
+        Some("pictures") => return written(example::draw()),
         _ => return usage(),
     };
     let chosen: Vec<_> = match arguments.get(1) {
@@ -43,8 +46,21 @@ fn main() -> ExitCode {
     }
 }
 
+fn written(files: Result<Vec<PathBuf>, Box<dyn std::error::Error>>) -> ExitCode {
+    match files {
+        Ok(files) => {
+            files.iter().for_each(|f| println!("{}", f.display()));
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
 fn usage() -> ExitCode {
-    eprintln!("usage: moldwarp-validation coarse|fine [CASE]\ncases:");
+    eprintln!("usage: moldwarp-validation coarse|fine [CASE] | exact | pictures\ncases:");
     for case in &cases::ALL {
         eprintln!("  {:18} {}", case.name, case.title);
     }

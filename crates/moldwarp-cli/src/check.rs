@@ -21,30 +21,12 @@ pub fn check(args: &CheckArgs) -> Result<Exit, Failure> {
     }
 }
 
-/// Above this ratio of longest edge to shortest altitude an element is a sliver.
-const SLIVER: f64 = 10.0;
-
 fn plan(f: &Forecast, threads: usize) -> String {
     let mut lines = vec![f.title.clone()];
     lines.extend(f.notes.iter().map(|n| format!("note: {n}")));
-    lines.push(format!(
-        "mesh        {} elements, {} nodes, mean edge {} m",
-        f.elements,
-        f.nodes,
-        number(f.quality.mean_edge)
-    ));
-    lines.push(format!(
-        "            shortest altitude {} m (element {}), worst edge over altitude {} (element {}){}",
-        number(f.quality.smallest_altitude),
-        f.quality.smallest_altitude_element,
-        number(f.quality.worst_aspect),
-        f.quality.worst_aspect_element,
-        if f.quality.worst_aspect > SLIVER {
-            ": a sliver"
-        } else {
-            ""
-        }
-    ));
+    let [size, quality] = &f.mesh;
+    lines.push(format!("mesh        {size}"));
+    lines.push(format!("            {quality}"));
     lines.extend(f.bodies.iter().map(|b| {
         format!(
             "body        `{}` of `{}`: {} particles, {} m3, {} kg",

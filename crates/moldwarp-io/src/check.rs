@@ -1,8 +1,8 @@
 //! What a run would be, without running it.
 
-use crate::run::{Expected, RunError, columns, end_time, frame_bytes};
+use crate::mesh::describe_quality;
+use crate::run::{Expected, RunError, columns, end_time, frame_bytes, simulation};
 use crate::scene::{Every, Scene};
-use moldwarp::mesh::Quality;
 use moldwarp::plan::Until;
 use moldwarp::{Simulation, Stop};
 use std::time::{Duration, Instant};
@@ -11,10 +11,9 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct Forecast {
     pub title: String,
-    pub nodes: usize,
-    pub elements: usize,
     pub particles: usize,
-    pub quality: Quality,
+    /// What [`describe_quality`] says of the mesh.
+    pub mesh: [String; 2],
     pub bodies: Vec<BodyForecast>,
     /// The stable step at the start, s.
     pub stable_time_step: f64,
@@ -68,10 +67,10 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
             .collect()
     };
     let title = scene.plan.title.clone();
-    let mut sim = Simulation::new(scene.plan)?;
+    let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
     let columns = columns(&sim);
     Expected::read_all(&scene.compare, &columns)?;
-    let quality = sim.mesh().quality();
+    let mesh = describe_quality(sim.mesh(), &scene.element_tags);
     let bodies = bodies(&sim, names);
     let stable_time_step = sim.stable_time_step();
     let time_step = sim.next_time_step();
@@ -86,10 +85,8 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
     let (pace, stopped) = trial(&mut sim);
     Ok(Forecast {
         title,
-        nodes,
-        elements,
         particles,
-        quality,
+        mesh,
         bodies,
         stable_time_step,
         time_step,

@@ -5,3 +5,4 @@ pub mod mesh;
 pub mod output;
 pub mod run;
 pub mod scene;
+pub mod text;

@@ -223,10 +223,7 @@ mod tests {
         let all = ByCell::new(&offsets, &mut data[..]);
         fold(all, 1, &|one: ByCell<&mut [u32]>| {
             let (from, to) = (one.offsets[one.cells.start], one.offsets[one.cells.end]);
-            assert_eq!(
-                one.particles.to_vec(),
-                (from..to).collect::<Vec<_>>()
-            );
+            assert_eq!(one.particles.to_vec(), (from..to).collect::<Vec<_>>());
         });
     }
 }

@@ -23,7 +23,7 @@ pub fn run(fidelity: Fidelity) -> Report {
         ..Report::default()
     };
     let end = 1.6;
-    let n = fidelity.pick(10, 40);
+    let n = fidelity.pick(20, 80);
     let mut plot = Plot::new(
         &format!("Bottom of the layer for several α and δ, {n} elements over the height"),
         "time (s)",
@@ -71,7 +71,7 @@ pub fn run(fidelity: Fidelity) -> Report {
             report.check(
                 format!("alpha {alpha}; delta {virtual_thickness} m: error over p L/E_c = 10 mm"),
                 error,
-                fidelity.pick(0.02, 0.01),
+                fidelity.pick(0.03, 0.015),
             );
             if virtual_thickness < 1.0 {
                 let points = h

@@ -4,9 +4,11 @@ mod error;
 mod explain;
 mod gmsh;
 mod missing;
+mod quality;
 
 pub use error::{GmshProblem, MeshFileError, Place};
 pub use explain::explain_mesh_error;
+pub use quality::describe_quality;
 
 use moldwarp::mesh::RawMesh;
 use std::fs;

@@ -12,14 +12,15 @@ pub use state::state_hash;
 pub(crate) use frames::frame_bytes;
 pub(crate) use history::{Expected, columns};
 
+use crate::mesh::describe_quality;
 use crate::output::csv::CsvError;
 use crate::output::hash::scene_hash;
 use crate::output::{FileError, Folder, FolderError, Summary, write_whole};
-use crate::scene::Scene;
+use crate::scene::{Origin, Scene, SceneError};
 use log::Log;
 use moldwarp::measure::Energies;
 use moldwarp::plan::Until;
-use moldwarp::{SetupError, Simulation, Stop};
+use moldwarp::{Plan, Simulation, Stop};
 use recorder::Recorder;
 use std::io::Write;
 use std::path::PathBuf;
@@ -104,7 +105,8 @@ pub struct Outcome {
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RunError {
     #[error(transparent)]
-    Setup(#[from] SetupError),
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
     #[error("the history has no column `{column}` that could be compared")]
     #[diagnostic(help("without [[compare]], `moldwarp check` lists the columns"))]
     NoSuchColumn { column: String },
@@ -145,7 +147,7 @@ pub fn run(
     let start = Instant::now();
     let title = scene.plan.title.clone();
     let scene_hash = scene_hash(&scene.plan);
-    let mut sim = Simulation::new(scene.plan)?;
+    let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
     let columns = columns(&sim);
     let expected = Expected::read_all(&scene.compare, &columns)?;
     let path = match &options.out {
@@ -162,6 +164,9 @@ pub fn run(
     log.line(&format!("moldwarp {}", env!("CARGO_PKG_VERSION")))?;
     log.line(&format!("scene {scene_hash}, {} threads", options.threads))?;
     notes.iter().try_for_each(|note| log.line(note))?;
+    for line in describe_quality(sim.mesh(), &scene.element_tags) {
+        log.line(&format!("mesh: {line}"))?;
+    }
     write_whole(&folder.scene(), |out| out.write_all(scene.text.as_bytes()))?;
     let end = end_time(&sim);
     let mut recorder = Recorder::new(&scene.output, end, &folder, &columns, expected)?;
@@ -194,6 +199,15 @@ pub fn run(
         stopped,
         problems,
     })
+}
+
+/// The simulation, or what keeps it from being set up in the words of the scene.
+pub(crate) fn simulation(
+    plan: Plan,
+    origin: &Origin,
+    text: &str,
+) -> Result<Simulation, SceneError> {
+    Simulation::new(plan).map_err(|error| origin.explain(&error, text))
 }
 
 /// The part of the summary that the simulation and its pace tell.

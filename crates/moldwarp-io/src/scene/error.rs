@@ -17,7 +17,7 @@ struct Content {
 
 /// The same before it is known which file it belongs to: what the checks return.
 #[derive(Debug)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     pub message: String,
     /// Byte ranges in the scene's text and what to say there.
     pub labels: Vec<(Range<usize>, String)>,

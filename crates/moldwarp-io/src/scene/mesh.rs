@@ -5,20 +5,21 @@ use super::error::Fault;
 use super::quantity::{self, Dimension};
 use super::raw::{RawBox, RawMesh, Text};
 use super::values::{exactly_one, span, three, vector};
-use crate::mesh::{MeshFile, read_gmsh};
+use crate::mesh::{MeshFileError, explain_mesh_error, read_gmsh};
 use moldwarp::Mesh;
-use moldwarp::mesh::{MeshError, box_mesh};
+use moldwarp::mesh::box_mesh;
 use std::path::Path;
 
 /// More cells than this are a slip, not a mesh: 24 million elements.
 const MOST_CELLS: u64 = 4_000_000;
 
-/// The mesh in metres. What its reader has to say goes to `notes`.
+/// The mesh in metres, and the tags of its elements if a file gave them some. What its reader has
+/// to say goes to `notes`.
 pub(super) fn mesh(
     raw: &Spanned<RawMesh>,
     folder: &Path,
     notes: &mut Vec<String>,
-) -> Result<Mesh, Fault> {
+) -> Result<(Mesh, Vec<u64>), Fault> {
     let place = raw.span();
     let raw = raw.get_ref();
     exactly_one(
@@ -30,7 +31,7 @@ pub(super) fn mesh(
         (None, Some(_), Some(unit)) => Err(Fault::new("`unit` is for mesh files")
             .at(unit.span(), "a generated mesh does not need it")
             .help("write the unit in the box's size: size = [\"1 m\", \"1 m\", \"20 cm\"]")),
-        (None, Some(cuboid), None) => generated(cuboid),
+        (None, Some(cuboid), None) => Ok((generated(cuboid)?, Vec::new())),
         (None, None, _) => Err(Fault::new("the scene has no mesh")),
     }
 }
@@ -52,7 +53,7 @@ fn generated(cuboid: &Spanned<RawBox>) -> Result<Mesh, Fault> {
             .at(raw.cells.span(), format!("more than {MOST_CELLS}"))
             .help("each cell becomes six elements; take fewer"));
     }
-    box_mesh(size, cells).map_err(|e| damaged(e.to_string(), cuboid.span()))
+    box_mesh(size, cells).map_err(|e| damaged(&e.to_string(), cuboid.span()))
 }
 
 fn from_file(
@@ -60,22 +61,22 @@ fn from_file(
     unit: Option<&Text>,
     folder: &Path,
     notes: &mut Vec<String>,
-) -> Result<Mesh, Fault> {
+) -> Result<(Mesh, Vec<u64>), Fault> {
     let scale = match unit {
         Some(unit) => length_unit(unit)?,
         None => 1.0,
     };
     let path = folder.join(file.get_ref());
-    if !path.exists() {
-        return Err(missing(file, &path));
-    }
-    let mut read = read_gmsh(&path).map_err(|e| damaged(e.to_string(), file.span()))?;
+    let mut read = read_gmsh(&path).map_err(|e| unreadable(e, file, &path))?;
     for x in &mut read.raw.nodes {
         *x *= scale;
     }
     notes.append(&mut read.notes);
-    let raw = std::mem::take(&mut read.raw);
-    Mesh::new(raw).map_err(|e| damaged(in_file_numbers(e, &read).to_string(), file.span()))
+    let mesh = Mesh::new(read.raw).map_err(|e| {
+        let message = explain_mesh_error(&e, &read.node_tags, &read.element_tags);
+        damaged(&format!("{}: {message}", path.display()), file.span())
+    })?;
+    Ok((mesh, read.element_tags))
 }
 
 fn length_unit(unit: &Text) -> Result<f64, Fault> {
@@ -86,103 +87,26 @@ fn length_unit(unit: &Text) -> Result<f64, Fault> {
     })
 }
 
-/// A mesh is often made from a .geo beside it that was not meshed yet.
-fn missing(file: &Text, path: &Path) -> Fault {
-    let name = file.get_ref();
-    let geometry = Path::new(name).with_extension("geo");
-    let help = if path.with_extension("geo").exists() {
-        format!(
-            "make it in the scene's folder with `gmsh -3 {} -o {name}`",
-            geometry.display()
-        )
-    } else {
-        "paths are relative to the scene's folder".to_owned()
-    };
-    Fault::new(format!("there is no mesh file `{name}`"))
-        .at(file.span(), "no such file")
-        .help(help)
-}
-
-fn damaged(message: String, place: std::ops::Range<usize>) -> Fault {
-    Fault::new(message).at(place, "this mesh")
-}
-
-/// The user knows the elements and nodes by their numbers in the file.
-fn in_file_numbers(error: MeshError, file: &MeshFile) -> MeshError {
-    let of = |tags: &[u64], i: usize| tags.get(i).map_or(i, |&tag| tag as usize);
-    let small = |tags: &[u64], i: u32| u32::try_from(of(tags, i as usize)).unwrap_or(i);
-    let (nodes, elements) = (&file.node_tags, &file.element_tags);
+/// The mesh file cannot be read: where it is named, and what its reader advises.
+fn unreadable(error: MeshFileError, file: &Text, path: &Path) -> Fault {
     match error {
-        MeshError::NotFinite { node } => MeshError::NotFinite {
-            node: of(nodes, node),
-        },
-        MeshError::Inverted {
-            element,
-            volume,
-            others,
-        } => MeshError::Inverted {
-            element: of(elements, element),
-            volume,
-            others,
-        },
-        MeshError::Flat {
-            element,
-            volume,
-            others,
-        } => MeshError::Flat {
-            element: of(elements, element),
-            volume,
-            others,
-        },
-        MeshError::FaceShared {
-            nodes: n,
-            elements: e,
-        } => MeshError::FaceShared {
-            nodes: n.map(|i| small(nodes, i)),
-            elements: e.into_iter().map(|i| small(elements, i)).collect(),
-        },
-        MeshError::NoSuchFace { surface, nodes: n } => MeshError::NoSuchFace {
-            surface,
-            nodes: n.map(|i| small(nodes, i)),
-        },
-        MeshError::TwoVolumes {
-            element,
-            first,
-            second,
-        } => MeshError::TwoVolumes {
-            element: small(elements, element),
-            first,
-            second,
-        },
-        other @ (MeshError::Empty | MeshError::NoSuchNode { .. }) => other,
+        MeshFileError::Missing { advice, .. } => {
+            let help = match path.with_extension("geo").is_file() {
+                true => advice,
+                false => format!("paths are relative to the scene's folder; {advice}"),
+            };
+            Fault::new(format!("there is no mesh file `{}`", file.get_ref()))
+                .at(file.span(), "no such file")
+                .help(help)
+        }
+        other => damaged(&other.to_string(), file.span()),
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use moldwarp::mesh::RawMesh;
-
-    #[test]
-    fn a_damaged_element_has_its_number_in_the_file() {
-        let file = MeshFile {
-            raw: RawMesh::default(),
-            node_tags: vec![10, 20, 30],
-            element_tags: vec![100, 200],
-            notes: Vec::new(),
-        };
-        let error = MeshError::Flat {
-            element: 1,
-            volume: 0.0,
-            others: 0,
-        };
-        let message = in_file_numbers(error, &file).to_string();
-        assert!(message.starts_with("element 200 is flat"), "{message}");
-        let error = MeshError::FaceShared {
-            nodes: [0, 1, 2],
-            elements: vec![0, 1],
-        };
-        let message = in_file_numbers(error, &file).to_string();
-        assert!(message.contains("[10, 20, 30]") && message.contains("[100, 200]"));
+/// Messages on meshes say what is wrong and, after a semicolon, what to do.
+fn damaged(message: &str, place: std::ops::Range<usize>) -> Fault {
+    match message.split_once("; ") {
+        Some((problem, remedy)) => Fault::new(problem).at(place, "this mesh").help(remedy),
+        None => Fault::new(message).at(place, "this mesh"),
     }
 }

@@ -33,9 +33,11 @@ pub use error::SceneError;
 pub use output::{Compare, Every, OutputSettings};
 
 use error::Fault;
-use moldwarp::Plan;
+use moldwarp::step::TimeStepError;
+use moldwarp::{Plan, SetupError};
 use quantity::Dimension;
 use raw::RawScene;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A scene, read and checked.
@@ -55,6 +57,45 @@ pub struct Scene {
     pub text: String,
     /// What the user should know though it is no error.
     pub notes: Vec<String>,
+    /// The mesh file's tags of the elements, in their order; none if the mesh was generated.
+    pub element_tags: Vec<u64>,
+    /// For messages that come up later.
+    pub(crate) origin: Origin,
+}
+
+/// Where a scene came from.
+#[derive(Debug, Default)]
+pub(crate) struct Origin {
+    /// Its name in messages.
+    name: String,
+    overrides: Vec<overrides::Override>,
+    time_step: Option<Range<usize>>,
+}
+
+impl Origin {
+    /// What the solver found when it set up the scene, shown in the scene's `text` where it has a
+    /// place there.
+    pub(crate) fn explain(&self, error: &SetupError, text: &str) -> SceneError {
+        let fault = match (error, &self.time_step) {
+            (SetupError::TimeStep(TimeStepError::AboveStable { .. }), Some(place)) => {
+                above_stable(error, place)
+            }
+            _ => Fault::new(error.to_string()),
+        };
+        overrides::blame(fault, text, &self.overrides).in_file(&self.name, text)
+    }
+}
+
+fn above_stable(error: &SetupError, place: &Range<usize>) -> Fault {
+    let text = error.to_string();
+    let problem = text.split_once(": ").map_or(&*text, |parts| parts.0);
+    Fault::new(problem)
+        .at(place.clone(), "above the stable step")
+        .help(
+            "leave `time_step` out, and the step follows the stable one; `max_time_step` only \
+             bounds it; a forced step has to stay below the stable one, which shrinks as elements \
+             are compressed",
+        )
 }
 
 /// Reads a scene from a file, or from scene.toml in a folder.
@@ -83,9 +124,15 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),
     };
-    syntax::parse(&text)
-        .and_then(|raw| check(&raw, &file, folder, &text))
-        .map_err(|fault| overrides::blame(fault, &text, &overrides).in_file(&name, &text))
+    let read = syntax::parse(&text).and_then(|raw| check(&raw, &file, folder, &text));
+    match read {
+        Ok(mut scene) => {
+            scene.origin.name = name;
+            scene.origin.overrides = overrides;
+            Ok(scene)
+        }
+        Err(fault) => Err(overrides::blame(fault, &text, &overrides).in_file(&name, &text)),
+    }
 }
 
 fn unreadable(name: &str, path: &Path, error: &std::io::Error) -> SceneError {
@@ -108,7 +155,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     let numerics = numerics::numerics(&raw.numerics)?;
     let output = output::output(&raw.output)?;
     let materials = materials::materials(&raw.materials)?;
-    let mesh = mesh::mesh(&raw.mesh, &folder, &mut notes)?;
+    let (mesh, element_tags) = mesh::mesh(&raw.mesh, &folder, &mut notes)?;
     let bodies = bodies::bodies(&raw.bodies, &mesh, &materials)?;
     let boundaries = boundaries::boundaries(&raw.boundaries, &mesh)?;
     let loads = loads::loads(&raw.loads, &mesh, &bodies)?;
@@ -139,6 +186,11 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         folder,
         text: text.to_owned(),
         notes,
+        element_tags,
+        origin: Origin {
+            time_step: values::span(&raw.numerics.time_step),
+            ..Origin::default()
+        },
     })
 }
 

@@ -7,7 +7,7 @@ use super::raw::{RawNumerics, RawViscosity};
 use super::values::{
     amount, amount_at, at_most_one, choose, damping, not_negative, placed, positive, span,
 };
-use moldwarp::plan::{Integration, Numerics};
+use moldwarp::plan::{Integration, MassMatrix, Numerics};
 use std::f64::consts::PI;
 
 /// What is not given is as in [`Numerics::default`].
@@ -23,6 +23,13 @@ pub(super) fn numerics(raw: &RawNumerics) -> Result<Numerics, Fault> {
             ("particle", Integration::Particle),
         ];
         n.integration = choose(placed(word), "integration", &choices, &[])?;
+    }
+    if let Some(word) = &raw.mass {
+        let choices = [
+            ("corrected", MassMatrix::Corrected),
+            ("lumped", MassMatrix::Lumped),
+        ];
+        n.mass = choose(placed(word), "mass matrix", &choices, &[])?;
     }
     if let Some(smoothing) = raw.smoothing {
         n.smoothing = smoothing;

@@ -5,7 +5,9 @@ use super::error::Fault;
 use super::quantity::Dimension;
 use super::raw::{RawAmount, RawCompare, RawOutput, Text};
 use super::suggest;
+use super::unsupported;
 use super::values::{at_most_one, count, positive, span};
+use moldwarp::measure::Energies;
 use moldwarp::plan::Probe;
 use std::path::{Path, PathBuf};
 
@@ -44,26 +46,6 @@ pub struct Compare {
     /// CSV file of time (s) and value, under the scene's folder.
     pub file: PathBuf,
 }
-
-/// Energies that the history always has.
-const ENERGIES: [&str; 16] = [
-    "kinetic",
-    "kinetic_grid",
-    "elastic",
-    "gravity",
-    "load",
-    "prescribed",
-    "plastic",
-    "friction",
-    "contact",
-    "damping",
-    "absorbed",
-    "removed",
-    "transfer",
-    "smoothing",
-    "integration",
-    "residual",
-];
 
 pub(super) fn output(raw: &RawOutput) -> Result<OutputSettings, Fault> {
     let default = OutputSettings::default();
@@ -136,7 +118,7 @@ fn columns(probes: &[Probe]) -> Vec<String> {
             }
         }
     }
-    columns.extend(ENERGIES.iter().map(|kind| format!("energy.{kind}")));
+    columns.extend(Energies::NAMES.iter().map(|kind| format!("energy.{kind}")));
     columns
 }
 
@@ -144,6 +126,17 @@ fn check_column(column: &Text, columns: &[String]) -> Result<(), Fault> {
     let name = column.get_ref();
     if columns.contains(name) {
         return Ok(());
+    }
+    let later = name.strip_prefix("energy.");
+    if later.is_some_and(|kind| unsupported::ENERGIES.contains(&kind)) {
+        return Err(Fault::new(format!(
+            "the column `{name}` is not supported yet by this version"
+        ))
+        .at(column.span(), "not supported yet")
+        .help(format!(
+            "energies there are: {}",
+            suggest::list(Energies::NAMES)
+        )));
     }
     let near = suggest::nearest(name, columns.iter().map(String::as_str));
     let help = match near {

@@ -13,6 +13,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use toml_edit::{DocumentMut, Item, Key, Value};
 
 /// One `--set`, applied.
+#[derive(Debug)]
 pub(super) struct Override {
     /// As the user wrote it.
     entry: String,

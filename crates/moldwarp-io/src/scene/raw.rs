@@ -132,6 +132,7 @@ pub(super) struct RawProbe {
 #[serde(deny_unknown_fields)]
 pub(super) struct RawNumerics {
     pub integration: Option<Text>,
+    pub mass: Option<Text>,
     pub smoothing: Option<bool>,
     pub courant: Option<RawAmount>,
     pub pic_rate: Option<RawAmount>,

@@ -25,6 +25,8 @@ pub(super) const MODELS: [&str; 1] = ["mohr-coulomb"];
 pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];
 /// What probes record.
 pub(super) const QUANTITIES: [&str; 1] = ["penetration"];
+/// Energies in the history.
+pub(super) const ENERGIES: [&str; 4] = ["plastic", "friction", "contact", "removed"];
 
 /// Whether `key` is one of them where `siblings` are the keys that are known.
 pub(super) fn key(key: &str, siblings: &[&str]) -> bool {

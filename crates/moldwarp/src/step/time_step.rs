@@ -8,9 +8,19 @@ use std::ops::Range;
 /// A forced step that would be unstable, or a state that has none.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 pub enum TimeStepError {
-    #[error("the forced time step of {forced:e} s is above the stable one of {stable:e} s")]
-    AboveStable { forced: f64, stable: f64 },
-    #[error("there is no stable time step: a stress, volume or velocity is not a finite number")]
+    #[error(
+        "the forced time step of {forced:e} s is above the stable one, {stable:.3e} s at Courant \
+         number {courant}: force a smaller one, or none"
+    )]
+    AboveStable {
+        forced: f64,
+        stable: f64,
+        courant: f64,
+    },
+    #[error(
+        "there is no stable time step, as a stress, volume or velocity is not a finite number: \
+         look for values out of proportion in materials, loads and velocities"
+    )]
     NotFinite,
 }
 
@@ -22,7 +32,11 @@ pub(super) fn choose(sim: &Simulation) -> Result<f64, TimeStepError> {
         return Err(TimeStepError::NotFinite);
     }
     match numerics.time_step {
-        Some(forced) if forced > stable => Err(TimeStepError::AboveStable { forced, stable }),
+        Some(forced) if forced > stable => Err(TimeStepError::AboveStable {
+            forced,
+            stable,
+            courant: numerics.courant,
+        }),
         Some(forced) => Ok(forced),
         None => Ok(numerics.max_time_step.map_or(stable, |m| m.min(stable))),
     }

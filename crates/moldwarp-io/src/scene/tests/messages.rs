@@ -249,6 +249,7 @@ fn loads_and_probes() {
 fn numerics_stages_output() {
     let lines = [
         case("courant", "courant = 0.5", "courant = 1.5"),
+        case("mass matrix", "smoothing = true", "mass = \"consistent\""),
         case("damping", "damping = 0.0", "damping = 1"),
         case(
             "negative viscosity",
@@ -287,6 +288,16 @@ fn numerics_stages_output() {
             "misspelt column",
             "[output]",
             "[[compare]]\ncolumn = \"bottom.stress.z\"\nfile = \"a.csv\"\n[output]",
+        ),
+        case(
+            "energy for later",
+            "[output]",
+            "[[compare]]\ncolumn = \"energy.plastic\"\nfile = \"a.csv\"\n[output]",
+        ),
+        case(
+            "misspelt energy",
+            "[output]",
+            "[[compare]]\ncolumn = \"energy.kinetik\"\nfile = \"a.csv\"\n[output]",
         ),
         case(
             "no file to compare with",

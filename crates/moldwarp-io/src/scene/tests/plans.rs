@@ -6,7 +6,8 @@ use moldwarp::Vec3;
 use moldwarp::boundary::Function;
 use moldwarp::material::{LinearElastic, Material};
 use moldwarp::plan::{
-    BoundaryKind, Integration, LoadKind, Place, Quantity, Region, Seeding, Target, Until,
+    BoundaryKind, Integration, LoadKind, MassMatrix, Place, Quantity, Region, Seeding, Target,
+    Until,
 };
 
 #[test]
@@ -168,6 +169,17 @@ fn functions_are_read_in_all_their_kinds() {
             count: 1
         }
     );
+}
+
+#[test]
+fn the_mass_matrix_is_corrected_unless_it_is_to_be_lumped() {
+    let mass = |line: &str| {
+        let text = with("smoothing = true", line);
+        read(&text, &[]).unwrap().plan.numerics.mass
+    };
+    assert_eq!(mass("smoothing = true"), MassMatrix::Corrected);
+    assert_eq!(mass("mass = \"corrected\""), MassMatrix::Corrected);
+    assert_eq!(mass("mass = \"lumped\""), MassMatrix::Lumped);
 }
 
 #[test]

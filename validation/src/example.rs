@@ -1,0 +1,121 @@
+//! The absorbing-column example: its exact histories and its plots.
+
+use crate::exact::column::{Bottom, Column, ColumnSolution};
+use crate::plot::Plot;
+use crate::setup;
+use moldwarp::Simulation;
+use moldwarp_io::scene;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+const SPRING: Bottom = Bottom::DashpotAndSpring { alpha: 2.5, virtual_thickness: 0.5 };
+const DASHPOT: Bottom = Bottom::Dashpot { alpha: 2.5 };
+/// End of the scenes, s.
+const END: f64 = 2.0;
+
+/// Scene, its bottom, and the file of its exact history.
+const SCENES: [(&str, &str, Bottom, &str); 3] = [
+    ("scene.toml", "dashpot and spring", SPRING, "exact.csv"),
+    ("dashpot.toml", "dashpot alone", DASHPOT, "exact-dashpot.csv"),
+    ("rigid.toml", "rigid", Bottom::Rigid, "exact-rigid.csv"),
+];
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/absorbing-column")
+}
+
+/// Writes the exact histories beside the scenes: the bottom's displacement, upward positive, for
+/// the absorbing bottoms, the top's for the rigid one. Returns the files.
+pub fn write_exact() -> std::io::Result<Vec<PathBuf>> {
+    SCENES
+        .iter()
+        .map(|&(_, _, bottom, file)| {
+            let path = folder().join(file);
+            std::fs::write(&path, exact_history(bottom))?;
+            Ok(path)
+        })
+        .collect()
+}
+
+/// Time and displacement every millisecond, as the text of a CSV file.
+pub fn exact_history(bottom: Bottom) -> String {
+    let exact = Column::of_the_paper(bottom).solve(END);
+    let mut text = String::from("time,displacement\n");
+    for i in 0..=2000 {
+        let t = END * f64::from(i) / 2000.0;
+        let down = match bottom {
+            Bottom::Rigid => exact.top_displacement(t),
+            _ => exact.bottom_displacement(t),
+        };
+        writeln!(text, "{t:.3},{:.9e}", -down).expect("a string takes what is written to it");
+    }
+    text
+}
+
+/// Histories of a scene: time, bottom's displacement, bottom's pressure.
+struct Run {
+    label: &'static str,
+    exact: ColumnSolution,
+    points: Vec<[f64; 3]>,
+}
+
+/// Runs the three scenes and draws the bottom's displacement and stress over time beside the
+/// scenes. Returns the files.
+pub fn draw() -> Result<Vec<PathBuf>, Box<dyn std::error::Error>> {
+    let runs = SCENES.iter().map(run).collect::<Result<Vec<_>, _>>()?;
+    let mut displacement =
+        Plot::new("Bottom of the layer on three kinds of bottom", "time (s)", "downward displacement (mm)");
+    for run in runs.iter().filter(|r| r.label != "rigid") {
+        displacement.line(run.label, run.points.iter().map(|p| (p[0], 1e3 * p[1])).collect());
+        let exact = |t: f64| 1e3 * run.exact.bottom_displacement(t);
+        displacement.dashed(format!("{}, exact", run.label), curve(exact));
+    }
+    // Past this the dashpot's creep leaves the picture.
+    for curve in &mut displacement.curves {
+        curve.points.retain(|p| p.1 < 12.0);
+    }
+    let mut files = vec![("displacement.svg", displacement)];
+    for (file, run) in ["stress-spring.svg", "stress-dashpot.svg", "stress-rigid.svg"].iter().zip(&runs) {
+        let title = format!("Pressure at the bottom: {}", run.label);
+        let mut stress = Plot::new(&title, "time (s)", "pressure (kPa)");
+        stress.line("moldwarp", run.points.iter().map(|p| (p[0], 1e-3 * p[2])).collect());
+        stress.dashed("exact", curve(|t| 1e-3 * run.exact.bottom_pressure(t)));
+        files.push((file, stress));
+    }
+    let mut written = Vec::new();
+    for (file, plot) in files {
+        let path = folder().join(file);
+        std::fs::write(&path, plot.svg())?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    (0..=4000).map(|i| END * f64::from(i) / 4000.0).map(|t| (t, value(t))).collect()
+}
+
+fn run(
+    &(file, label, bottom, _): &(&str, &'static str, Bottom, &str),
+) -> Result<Run, Box<dyn std::error::Error>> {
+    let scene = scene::load(&folder().join(file), &[])?;
+    let mut points = Vec::new();
+    setup::run(scene.plan, |s: &Simulation| {
+        let value = |column: &str| -setup::value(s, column);
+        points.push([s.time(), value("bottom.displacement.z"), value("bottom.stress.zz")]);
+    });
+    Ok(Run { label, exact: Column::of_the_paper(bottom).solve(END), points })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_committed_exact_histories_are_those_of_this_program() {
+        for (_, _, bottom, file) in SCENES {
+            let committed = std::fs::read_to_string(folder().join(file)).expect(file);
+            assert!(committed == exact_history(bottom), "run `moldwarp-validation exact`: {file} is stale");
+        }
+    }
+}

@@ -8,7 +8,10 @@ use moldwarp_io::scene;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-const SPRING: Bottom = Bottom::DashpotAndSpring { alpha: 2.5, virtual_thickness: 0.5 };
+const SPRING: Bottom = Bottom::DashpotAndSpring {
+    alpha: 2.5,
+    virtual_thickness: 0.5,
+};
 const DASHPOT: Bottom = Bottom::Dashpot { alpha: 2.5 };
 /// End of the scenes, s.
 const END: f64 = 2.0;
@@ -16,7 +19,12 @@ const END: f64 = 2.0;
 /// Scene, its bottom, and the file of its exact history.
 const SCENES: [(&str, &str, Bottom, &str); 3] = [
     ("scene.toml", "dashpot and spring", SPRING, "exact.csv"),
-    ("dashpot.toml", "dashpot alone", DASHPOT, "exact-dashpot.csv"),
+    (
+        "dashpot.toml",
+        "dashpot alone",
+        DASHPOT,
+        "exact-dashpot.csv",
+    ),
     ("rigid.toml", "rigid", Bottom::Rigid, "exact-rigid.csv"),
 ];
 
@@ -63,10 +71,16 @@ struct Run {
 /// scenes. Returns the files.
 pub fn draw() -> Result<Vec<PathBuf>, Box<dyn std::error::Error>> {
     let runs = SCENES.iter().map(run).collect::<Result<Vec<_>, _>>()?;
-    let mut displacement =
-        Plot::new("Bottom of the layer on three kinds of bottom", "time (s)", "downward displacement (mm)");
+    let mut displacement = Plot::new(
+        "Bottom of the layer on three kinds of bottom",
+        "time (s)",
+        "downward displacement (mm)",
+    );
     for run in runs.iter().filter(|r| r.label != "rigid") {
-        displacement.line(run.label, run.points.iter().map(|p| (p[0], 1e3 * p[1])).collect());
+        displacement.line(
+            run.label,
+            run.points.iter().map(|p| (p[0], 1e3 * p[1])).collect(),
+        );
         let exact = |t: f64| 1e3 * run.exact.bottom_displacement(t);
         displacement.dashed(format!("{}, exact", run.label), curve(exact));
     }
@@ -75,10 +89,20 @@ pub fn draw() -> Result<Vec<PathBuf>, Box<dyn std::error::Error>> {
         curve.points.retain(|p| p.1 < 12.0);
     }
     let mut files = vec![("displacement.svg", displacement)];
-    for (file, run) in ["stress-spring.svg", "stress-dashpot.svg", "stress-rigid.svg"].iter().zip(&runs) {
+    for (file, run) in [
+        "stress-spring.svg",
+        "stress-dashpot.svg",
+        "stress-rigid.svg",
+    ]
+    .iter()
+    .zip(&runs)
+    {
         let title = format!("Pressure at the bottom: {}", run.label);
         let mut stress = Plot::new(&title, "time (s)", "pressure (kPa)");
-        stress.line("moldwarp", run.points.iter().map(|p| (p[0], 1e-3 * p[2])).collect());
+        stress.line(
+            "moldwarp",
+            run.points.iter().map(|p| (p[0], 1e-3 * p[2])).collect(),
+        );
         stress.dashed("exact", curve(|t| 1e-3 * run.exact.bottom_pressure(t)));
         files.push((file, stress));
     }
@@ -92,7 +116,10 @@ pub fn draw() -> Result<Vec<PathBuf>, Box<dyn std::error::Error>> {
 }
 
 fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-    (0..=4000).map(|i| END * f64::from(i) / 4000.0).map(|t| (t, value(t))).collect()
+    (0..=4000)
+        .map(|i| END * f64::from(i) / 4000.0)
+        .map(|t| (t, value(t)))
+        .collect()
 }
 
 fn run(
@@ -102,9 +129,17 @@ fn run(
     let mut points = Vec::new();
     setup::run(scene.plan, |s: &Simulation| {
         let value = |column: &str| -setup::value(s, column);
-        points.push([s.time(), value("bottom.displacement.z"), value("bottom.stress.zz")]);
+        points.push([
+            s.time(),
+            value("bottom.displacement.z"),
+            value("bottom.stress.zz"),
+        ]);
     });
-    Ok(Run { label, exact: Column::of_the_paper(bottom).solve(END), points })
+    Ok(Run {
+        label,
+        exact: Column::of_the_paper(bottom).solve(END),
+        points,
+    })
 }
 
 #[cfg(test)]
@@ -115,7 +150,10 @@ mod tests {
     fn the_committed_exact_histories_are_those_of_this_program() {
         for (_, _, bottom, file) in SCENES {
             let committed = std::fs::read_to_string(folder().join(file)).expect(file);
-            assert!(committed == exact_history(bottom), "run `moldwarp-validation exact`: {file} is stale");
+            assert!(
+                committed == exact_history(bottom),
+                "run `moldwarp-validation exact`: {file} is stale"
+            );
         }
     }
 }

@@ -4,8 +4,8 @@
 //! a minute and is tested; `fine` shows convergence and takes what it needs.
 
 pub mod cases;
-pub mod example;
 pub mod exact;
+pub mod example;
 mod plot;
 mod report;
 pub mod setup;

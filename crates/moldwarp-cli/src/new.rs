@@ -24,7 +24,10 @@ macro_rules! case {
     };
 }
 
-const CASES: &[Case] = &[case!("absorbing-column": "scene.toml")];
+const CASES: &[Case] = &[case!("absorbing-column":
+    "scene.toml", "dashpot.toml", "rigid.toml", "column.geo", "column.msh",
+    "exact.csv", "exact-dashpot.csv", "exact-rigid.csv", "README.md",
+)];
 
 /// Names of the examples.
 pub fn names() -> Vec<&'static str> {

@@ -223,12 +223,12 @@ pub enum Integration {
     Particle,
 }
 
-/// What particles receive of the accelerations of the lumped mass matrix.
+/// How nodal velocities come from particles in the remap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MassMatrix {
-    /// Accelerations corrected in filled elements for what lumping does to short waves.
+    /// The average Σ m_p v_p N_i / m_i, corrected for what averaging takes from short waves.
     Corrected,
-    /// Just a_i = F_i / m_i (Jassim et al. Eq. 6–8).
+    /// The average alone, with the lumped matrix (Jassim et al. Eq. 6).
     Lumped,
 }
 

@@ -29,11 +29,11 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     let (active, mesh, gravity, cells) = (&*active, &plan.mesh, plan.gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let work = fold(items, BLOCK, &|(slots, nodes): (
+    let (work, gain) = fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let mut work = DriftWork::default();
+        let (mut work, mut gain) = (DriftWork::default(), 0.0);
         for (slot, node) in slots.zip(nodes) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
@@ -62,8 +62,14 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             let mut force = unbalanced + node.damping;
             node.absorbing = Vec3::ZERO;
             if let Some(boundary) = absorbing.of(mesh_node) {
-                let end = boundary.solve(node.mass, node.velocity, force, h, constraints);
-                node.absorbing = boundary.force(node.velocity, end, h);
+                // The velocity that has moved the boundary, if it has moved.
+                let begin = if before > 0.0 {
+                    node.grid_velocity
+                } else {
+                    node.velocity
+                };
+                let end = boundary.solve(node.mass, begin, force, h, constraints);
+                node.absorbing = boundary.force(begin, end, h);
                 force += node.absorbing;
             }
             node.acceleration = force / node.mass;
@@ -72,13 +78,14 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 node.acceleration = constraint.free * node.acceleration + held;
             }
             node.reaction = node.acceleration * node.mass - force;
+            gain += h * node.mass * node.velocity.dot(node.acceleration);
             if before > 0.0 {
                 work.add(node, gravity);
             }
         }
-        work
+        (work, gain)
     });
-    ledger.kick(work);
+    ledger.kick(work, gain);
 }
 
 /// Loads on particles, at the shape functions of the points they act on.

@@ -10,10 +10,8 @@ pub struct Node {
     pub mass: f64,
     /// v_i = Σ m_p v_p N_i / m_i before the kick, m/s.
     pub velocity: Vec3,
-    /// F_i / m_i with all that holds the node, m/s².
+    /// (change of velocity in the kick) / h: F_i / m_i with all that holds the node, m/s².
     pub acceleration: Vec3,
-    /// The acceleration that particles receive: corrected for the lumping of the mass, m/s².
-    pub received: Vec3,
     /// Loads.
     pub load: Vec3,
     /// Local damping.
@@ -22,6 +20,8 @@ pub struct Node {
     pub absorbing: Vec3,
     /// Force of fixities, rollers and prescribed velocities.
     pub reaction: Vec3,
+    /// Σ m_p v_p N_i / m_i of the updated particles, m/s.
+    pub average: Vec3,
     /// Velocity after the remap, with which the mesh moves the material, m/s.
     pub grid_velocity: Vec3,
     /// Δu_i of the last drift, m.
@@ -43,7 +43,7 @@ pub struct CellSums {
     pub momentum: [Vec3; 4],
     /// M_ij = Σ m_p N_i N_j of each pair of nodes: 01, 02, 03, 12, 13, 23, kg.
     pub pairs: [f64; 6],
-    /// Σ_j M_ij (a_i − a_j) for each node if the cell is filled, N.
+    /// Σ_j M_ij (v̄_i − v̄_j) of the averages for each node, kg m/s.
     pub exchange: [Vec3; 4],
     /// Σ σ_p V_p, J.
     pub stress: Voigt,

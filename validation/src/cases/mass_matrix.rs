@@ -6,8 +6,8 @@
 //! lost in one mapping there and back, since the average takes (k h)²/6 of the amplitude. The
 //! consistent matrix, M v = Σ m_p v_p N, loses only what linear shape functions cannot show,
 //! (k h)⁴/720. FLIP never maps velocities back, only accelerations, so that a run loses neither:
-//! its error is the period's, (k h)²/8 for plain lumping, taken back by the corrected
-//! accelerations (`step::mass`).
+//! its error is the period's, (k h)²/8 for plain lumping, taken back by the correction of the
+//! remap (`step::remap`).
 
 use super::first_mode::zero_crossings;
 use crate::setup;

@@ -81,6 +81,8 @@ impl Plot {
 
     fn draw(&self, text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
         let [(x0, x1), (y0, y1)] = self.ranges();
+        // Room for the legend.
+        let y1 = y1 + 0.06 * self.curves.len() as f64 * (y1 - y0);
         let root = SVGBackend::with_string(text, (860, 480)).into_drawing_area();
         root.fill(&WHITE).map_err(|e| e.to_string())?;
         let mut chart = ChartBuilder::on(&root)
@@ -114,6 +116,7 @@ impl Plot {
         }
         chart
             .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
             .label_font(("sans-serif", 14))

@@ -79,19 +79,19 @@ fn compared(c: &Compared) -> String {
 fn ledger(energies: &Energies, turned_over: f64) -> [String; 2] {
     let share = |joules: f64| {
         if turned_over > 0.0 {
-            text::number(joules / turned_over)
+            text::number(100.0 * joules / turned_over)
         } else {
             text::number(0.0)
         }
     };
     [
         format!(
-            "energy:  residual {} of the {} J turned over",
+            "energy:  residual {} % of the {} J turned over",
             share(energies.residual.abs()),
             text::number(turned_over)
         ),
         format!(
-            "         numerical terms {} of it",
+            "         numerical terms {} % of it",
             share(energies.numerical())
         ),
     ]

@@ -38,6 +38,16 @@ pub enum Stop {
         stage: String,
         time: f64,
     },
+    #[error(
+        "element {element} (counted from 0) turned over as the mesh followed an absorbing \
+         boundary, {time:e} s after the start in stage `{stage}`: the boundary yields by more than \
+         an element; give it a virtual thickness, or larger elements next to it"
+    )]
+    TurnedOver {
+        element: u32,
+        stage: String,
+        time: f64,
+    },
     #[error("stage `{stage}`, {time:e} s after the start: {error}")]
     TimeStep {
         error: TimeStepError,
@@ -149,7 +159,9 @@ impl Simulation {
         simulation.activate();
         simulation.begin_stage().map_err(|stop| match stop {
             Stop::TimeStep { error, .. } => SetupError::TimeStep(error),
-            Stop::LeftTheMesh { .. } => unreachable!("nothing has moved yet"),
+            Stop::LeftTheMesh { .. } | Stop::TurnedOver { .. } => {
+                unreachable!("nothing has moved yet")
+            }
         })?;
         Ok(simulation)
     }
@@ -288,6 +300,15 @@ impl Simulation {
         let stage = self.plan.stages[self.clock.stage].name.clone();
         Stop::TimeStep {
             error,
+            stage,
+            time: self.clock.time,
+        }
+    }
+
+    pub(crate) fn turned_over(&self, element: u32) -> Stop {
+        let stage = self.plan.stages[self.clock.stage].name.clone();
+        Stop::TurnedOver {
+            element,
             stage,
             time: self.clock.time,
         }

@@ -75,13 +75,16 @@ impl Follower {
         !self.follows.is_empty()
     }
 
-    /// Moves the mesh; `moved` is the displacement of the material at a node, m.
-    pub fn follow(&self, mesh: &mut Mesh, moved: impl Fn(u32) -> Vec3) {
+    /// Moves the mesh; `moved` is the displacement of the material at a node, m. Returns the first
+    /// element that has turned over, if any has.
+    pub fn follow(&self, mesh: &mut Mesh, moved: impl Fn(u32) -> Vec3) -> Option<u32> {
         for follow in &self.follows {
             mesh.nodes[follow.node as usize] +=
                 follow.motion * moved(follow.source).dot(follow.normal);
         }
         mesh.update_geometry();
+        let turned = mesh.volumes.par_iter().position_first(|&v| v <= 0.0);
+        turned.map(|element| element as u32)
     }
 }
 
@@ -194,12 +197,15 @@ mod tests {
             }
         };
         let follower = Follower::new(&mesh, &[&bottom], top_held);
-        follower.follow(&mut mesh, |_| Vec3::new(0.3, 0.0, -0.1));
+        let turned = follower.follow(&mut mesh, |_| Vec3::new(0.3, 0.0, -0.1));
+        assert_eq!(turned, None);
         for (x, old) in mesh.nodes.iter().zip(&before) {
             let expected = *old - Vec3::Z * 0.1 * (1.0 - old.z / 2.0);
             assert!((*x - expected).length() < 1e-8, "{x} {expected}");
         }
         assert!((mesh.total_volume() - 2.1).abs() < 1e-8);
+        // Pushed past the held top, elements turn over, and that is noticed.
+        assert!(follower.follow(&mut mesh, |_| Vec3::Z * 2.5).is_some());
     }
 
     #[test]
@@ -207,7 +213,10 @@ mod tests {
         let mut mesh = box_mesh(Vec3::ONE, [2, 2, 2]).unwrap();
         let bottom = mesh.surfaces[4].faces.clone();
         let follower = Follower::new(&mesh, &[&bottom], |_| Mat3::IDENTITY);
-        follower.follow(&mut mesh, |_| Vec3::new(0.0, 0.0, 0.25));
+        assert_eq!(
+            follower.follow(&mut mesh, |_| Vec3::new(0.0, 0.0, 0.25)),
+            None
+        );
         assert_eq!(
             mesh.bounds(),
             [Vec3::new(0.0, 0.0, 0.25), Vec3::new(1.0, 1.0, 1.25)]

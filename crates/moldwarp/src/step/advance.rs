@@ -16,11 +16,13 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
             follower,
             ..
         } = sim;
-        follower.follow(&mut plan.mesh, |node| {
-            nodes
-                .get(active.slot_of_node[node as usize] as usize)
-                .map_or(Vec3::ZERO, |n| n.moved)
-        });
+        let moved = |node: u32| {
+            let slot = active.slot_of_node[node as usize] as usize;
+            nodes.get(slot).map_or(Vec3::ZERO, |n| n.moved)
+        };
+        if let Some(element) = follower.follow(&mut plan.mesh, moved) {
+            return Err(sim.turned_over(element));
+        }
     }
     if locate(sim)? {
         sim.reorder();

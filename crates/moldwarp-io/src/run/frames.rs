@@ -3,7 +3,8 @@
 use crate::output::pvd::Collection;
 use crate::output::vtu::{self, Array, Data};
 use crate::output::{FileError, Folder};
-use moldwarp::Simulation;
+use moldwarp::material::StateField;
+use moldwarp::{Simulation, tensor};
 
 /// Writes frames of the particles and of the mesh into a folder.
 #[derive(Debug)]
@@ -42,9 +43,10 @@ impl Frames {
 fn write_particles(sim: &Simulation, path: &std::path::Path) -> Result<(), FileError> {
     let p = sim.particles();
     let pressure: Vec<f64> = p.stress.iter().map(mean_pressure).collect();
-    let deviatoric: Vec<f64> = p.stress.iter().map(deviatoric_stress).collect();
+    let deviatoric: Vec<f64> = p.stress.iter().map(tensor::equivalent).collect();
     let density: Vec<f64> = p.mass.iter().zip(&p.volume).map(|(m, v)| m / v).collect();
-    let fields = [
+    let states = state_fields(sim);
+    let mut fields = vec![
         Array::new("id", Data::U32(&p.id), ""),
         Array::new("body", Data::U16(&p.body), ""),
         Array::new("velocity", Data::Vectors(&p.velocity), "m/s"),
@@ -62,7 +64,36 @@ fn write_particles(sim: &Simulation, path: &std::path::Path) -> Result<(), FileE
         ),
         Array::new("density", Data::F64(&density), "kg/m3"),
     ];
+    for (field, values) in &states {
+        fields.push(Array::new(field.name, Data::F64(values), field.unit));
+    }
     vtu::write_points(path, sim.time(), &p.position, &fields)
+}
+
+/// The state variables of all models by name; 0 for particles of models that have none of a name.
+fn state_fields(sim: &Simulation) -> Vec<(StateField, Vec<f64>)> {
+    let (plan, particles) = (sim.plan(), sim.particles());
+    let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
+    let mut fields: Vec<StateField> = Vec::new();
+    for field in plan.materials.iter().flat_map(|m| m.model.state_fields()) {
+        if fields.iter().all(|f| f.name != field.name) {
+            fields.push(*field);
+        }
+    }
+    let value = |p: usize, name: &str| {
+        let own = model(particles.body[p]).state_fields();
+        let at = own.iter().position(|f| f.name == name);
+        at.map_or(0.0, |at| particles.state[p][at])
+    };
+    fields
+        .into_iter()
+        .map(|field| {
+            (
+                field,
+                (0..particles.len()).map(|p| value(p, field.name)).collect(),
+            )
+        })
+        .collect()
 }
 
 fn write_mesh(sim: &Simulation, path: &std::path::Path) -> Result<(), FileError> {
@@ -86,14 +117,6 @@ fn mean_pressure(s: &[f64; 6]) -> f64 {
     (0.0 - s[0] - s[1] - s[2]) / 3.0
 }
 
-/// q = √(3/2 s : s) with the deviator s of σ, Pa: |σ₁ − σ₃| in triaxial compression.
-fn deviatoric_stress(s: &[f64; 6]) -> f64 {
-    let p = mean_pressure(s);
-    let normal: f64 = s[..3].iter().map(|s| (s + p) * (s + p)).sum();
-    let shear: f64 = s[3..].iter().map(|s| s * s).sum();
-    (1.5 * (normal + 2.0 * shear)).sqrt()
-}
-
 /// Bytes of one frame of the particles and one of the mesh, headers left out.
 pub(crate) fn frame_bytes(particles: usize, nodes: usize, elements: usize) -> usize {
     // Position, the fields above, and a cell of its own; node, fields; four numbers, offset, type.
@@ -110,8 +133,8 @@ mod tests {
     fn triaxial_compression_gives_the_difference_of_the_stresses() {
         let s = [-100.0, -100.0, -400.0, 0.0, 0.0, 0.0];
         assert_eq!(mean_pressure(&s), 200.0);
-        assert!((deviatoric_stress(&s) - 300.0).abs() < 1e-12);
+        assert!((tensor::equivalent(&s) - 300.0).abs() < 1e-12);
         let shear = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0];
-        assert!((deviatoric_stress(&shear) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
+        assert!((tensor::equivalent(&shear) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
     }
 }

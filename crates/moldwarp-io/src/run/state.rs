@@ -2,6 +2,7 @@
 
 use crate::output::Hasher;
 use moldwarp::Simulation;
+use moldwarp::material::STATE_SIZE;
 use moldwarp::measure::Energies;
 use moldwarp::particles::Particles;
 
@@ -17,6 +18,7 @@ pub fn state_hash(sim: &Simulation) -> String {
         velocity,
         displacement,
         stress,
+        state,
         volume,
         initial_volume,
         mass,
@@ -33,6 +35,9 @@ pub fn state_hash(sim: &Simulation) -> String {
     h.vectors("displacement", by_id().map(|p| displacement[p]));
     for c in 0..6 {
         h.floats("stress", by_id().map(|p| stress[p][c]));
+    }
+    for c in 0..STATE_SIZE {
+        h.floats("state", by_id().map(|p| state[p][c]));
     }
     h.floats("volume", by_id().map(|p| volume[p]));
     h.floats("initial_volume", by_id().map(|p| initial_volume[p]));

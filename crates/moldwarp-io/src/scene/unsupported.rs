@@ -26,7 +26,7 @@ pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];
 /// What probes record.
 pub(super) const QUANTITIES: [&str; 1] = ["penetration"];
 /// Energies in the history.
-pub(super) const ENERGIES: [&str; 4] = ["plastic", "friction", "contact", "removed"];
+pub(super) const ENERGIES: [&str; 3] = ["friction", "contact", "removed"];
 
 /// Whether `key` is one of them where `siblings` are the keys that are known.
 pub(super) fn key(key: &str, siblings: &[&str]) -> bool {

@@ -6,6 +6,28 @@ pub use linear_elastic::LinearElastic;
 
 use crate::tensor::Voigt;
 
+/// Most state variables that a model may keep per particle.
+pub const STATE_SIZE: usize = 3;
+
+/// A particle's state variables; what they are is its model's affair. All zero at the start.
+pub type State = [f64; STATE_SIZE];
+
+/// Name and unit of a state variable, as they appear in the output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StateField {
+    pub name: &'static str,
+    pub unit: &'static str,
+}
+
+/// What a strain increment has done to a particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Update {
+    /// New stress, Pa.
+    pub stress: Voigt,
+    /// The plastic part of the strain increment.
+    pub plastic_strain: Voigt,
+}
+
 /// A material model with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Material {
@@ -13,11 +35,21 @@ pub enum Material {
 }
 
 impl Material {
-    /// Stress after a strain increment, Pa. `stress` has been rotated by the step's spin.
+    /// Stress after a strain increment. `stress` (Pa) has been rotated by the step's spin.
     #[inline]
-    pub fn update(&self, stress: &Voigt, strain: &Voigt) -> Voigt {
+    pub fn update(&self, stress: &Voigt, strain: &Voigt, _state: &mut State) -> Update {
         match self {
-            Material::LinearElastic(elastic) => elastic.update(stress, strain),
+            Material::LinearElastic(elastic) => Update {
+                stress: elastic.update(stress, strain),
+                plastic_strain: [0.0; 6],
+            },
+        }
+    }
+
+    /// The model's state variables, in the order of a particle's [`State`].
+    pub fn state_fields(&self) -> &'static [StateField] {
+        match self {
+            Material::LinearElastic(_) => &[],
         }
     }
 

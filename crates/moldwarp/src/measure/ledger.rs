@@ -66,7 +66,7 @@ pub struct Energies {
     pub kinetic: f64,
     /// ½ Σ m_i v_i² of nodes after the last remap, half a step earlier.
     pub kinetic_grid: f64,
-    /// Σ σ : Δε V, stored in the material.
+    /// Σ σ : (Δε − Δε^p) V, stored in the material.
     pub elastic: f64,
     /// −Σ m_p g · Δx_p.
     pub gravity: f64,
@@ -74,6 +74,8 @@ pub struct Energies {
     pub load: f64,
     /// Work of prescribed velocities.
     pub prescribed: f64,
+    /// Σ σ : Δε^p V, dissipated by plastic flow.
+    pub plastic: f64,
     /// Dissipated by local damping, viscosity and the relaxation to the mesh's velocities.
     pub damping: f64,
     /// Taken by absorbing boundaries: dissipated in dashpots, stored in springs.
@@ -92,13 +94,14 @@ pub struct Energies {
 
 impl Energies {
     /// Names in the order of [`Energies::values`].
-    pub const NAMES: [&'static str; 13] = [
+    pub const NAMES: [&'static str; 14] = [
         "kinetic",
         "kinetic_grid",
         "elastic",
         "gravity",
         "load",
         "prescribed",
+        "plastic",
         "damping",
         "absorbed",
         "transfer",
@@ -108,7 +111,7 @@ impl Energies {
         "residual",
     ];
 
-    pub fn values(&self) -> [f64; 13] {
+    pub fn values(&self) -> [f64; 14] {
         [
             self.kinetic,
             self.kinetic_grid,
@@ -116,6 +119,7 @@ impl Energies {
             self.gravity,
             self.load,
             self.prescribed,
+            self.plastic,
             self.damping,
             self.absorbed,
             self.transfer,
@@ -156,6 +160,7 @@ impl Ledger {
         let taken = now.kinetic
             + now.elastic
             + now.gravity
+            + now.plastic
             + now.damping
             + now.absorbed
             + now.transfer
@@ -185,11 +190,12 @@ impl Ledger {
         self.now.damping += viscous;
     }
 
-    /// A drift's work in particles: [σ : Δε̄ V, what smoothing left out].
-    pub(crate) fn particle_stress_work(&mut self, [elastic, smoothed_out]: [f64; 2]) {
+    /// A drift's work in particles: [σ : (Δε̄ − Δε^p) V, what smoothing left out, σ : Δε^p V].
+    pub(crate) fn particle_stress_work(&mut self, [elastic, smoothed_out, plastic]: [f64; 3]) {
         self.now.elastic += elastic;
+        self.now.plastic += plastic;
         self.now.smoothing += smoothed_out;
-        self.now.advection -= elastic + smoothed_out;
+        self.now.advection -= elastic + smoothed_out + plastic;
     }
 
     /// Σ m_p g · Δx_p of a drift.
@@ -240,6 +246,7 @@ impl Ledger {
             e.gravity,
             e.load,
             e.prescribed,
+            e.plastic,
             e.damping,
             e.absorbed,
         ];

@@ -7,6 +7,7 @@ pub use order::Order;
 pub use seeding::{SeedingError, seed};
 
 use crate::Vec3;
+use crate::material::State;
 use crate::tensor::Voigt;
 
 /// All particles. The arrays have the same length and order.
@@ -26,6 +27,8 @@ pub struct Particles {
     pub displacement: Vec<Vec3>,
     /// Cauchy stress, Pa.
     pub stress: Vec<Voigt>,
+    /// State variables of the material model.
+    pub state: Vec<State>,
     /// m³.
     pub volume: Vec<f64>,
     /// m³.

@@ -2,6 +2,7 @@
 
 use super::Particles;
 use crate::Vec3;
+use crate::material::State;
 use crate::tensor::Voigt;
 
 /// Working arrays of the sort, kept so that no step allocates.
@@ -13,6 +14,7 @@ pub struct Order {
     pub destination: Vec<u32>,
     vectors: Vec<Vec3>,
     stresses: Vec<Voigt>,
+    states: Vec<State>,
     numbers: Vec<f64>,
     indices: Vec<u32>,
     bodies: Vec<u16>,
@@ -46,6 +48,7 @@ impl Order {
         permute(to, &mut particles.velocity, &mut self.vectors);
         permute(to, &mut particles.displacement, &mut self.vectors);
         permute(to, &mut particles.stress, &mut self.stresses);
+        permute(to, &mut particles.state, &mut self.states);
         permute(to, &mut particles.volume, &mut self.numbers);
         permute(to, &mut particles.initial_volume, &mut self.numbers);
         permute(to, &mut particles.mass, &mut self.numbers);

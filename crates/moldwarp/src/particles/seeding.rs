@@ -83,6 +83,7 @@ pub fn seed(
         particles.velocity.push(Vec3::ZERO);
         particles.displacement.push(Vec3::ZERO);
         particles.stress.push([0.0; 6]);
+        particles.state.push(Default::default());
         particles.volume.push(seed.volume);
         particles.initial_volume.push(seed.volume);
         particles.mass.push(density * seed.volume);

@@ -1,12 +1,13 @@
 //! Stage 6: stresses and volumes of particles.
 
 use super::BLOCK;
+use crate::material::State;
 use crate::parallel::{ByCell, fold};
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt};
 
-/// Volume and stress arrays of some particles.
-type Arrays<'a> = (&'a mut [Voigt], &'a mut [f64]);
+/// Stresses, state variables and volumes of some particles.
+type Arrays<'a> = (&'a mut [Voigt], &'a mut [State], &'a mut [f64]);
 
 pub(super) fn run(sim: &mut Simulation) {
     let Simulation {
@@ -22,12 +23,16 @@ pub(super) fn run(sim: &mut Simulation) {
     let body = &particles.body;
     let (materials, bodies) = (&plan.materials, &plan.bodies);
     let smoothing = plan.numerics.smoothing;
-    let arrays = (&mut particles.stress[..], &mut particles.volume[..]);
+    let arrays = (
+        &mut particles.stress[..],
+        &mut particles.state[..],
+        &mut particles.volume[..],
+    );
     let block = ByCell::new(&active.offsets, arrays);
     let work = fold(block, BLOCK, &|block: ByCell<Arrays>| {
         let first = block.first();
-        let (stresses, volumes) = block.particles;
-        let mut work = [0.0; 2];
+        let (stresses, states, volumes) = block.particles;
+        let mut work = [0.0; 3];
         for c in block.cells {
             let strain = &strains[c];
             let volumetric = if smoothing {
@@ -50,11 +55,14 @@ pub(super) fn run(sim: &mut Simulation) {
                 let volume = &mut volumes[p - first];
                 let material = &materials[bodies[body[p] as usize].material].model;
                 let turned = tensor::rotate(stress, &spin);
-                *stress = material.update(&turned, &increment);
+                let update = material.update(&turned, &increment, &mut states[p - first]);
+                *stress = update.stress;
                 let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]));
                 let middle_volume = 0.5 * *volume * (1.0 + growth);
                 *volume *= growth;
-                work[0] += tensor::dot(&middle, &increment) * middle_volume;
+                let plastic = tensor::dot(&middle, &update.plastic_strain) * middle_volume;
+                work[0] += tensor::dot(&middle, &increment) * middle_volume - plastic;
+                work[2] += plastic;
                 work[1] +=
                     tensor::trace(&middle) / 3.0 * (strain.volumetric - volumetric) * middle_volume;
             }

@@ -77,7 +77,7 @@ pub fn draw() -> Result<Vec<PathBuf>, Failure> {
         .map(|s| Ok(run(s)?.0))
         .collect::<Result<_, Failure>>()?;
     let mut displacement = Plot::new(
-        "Bottom of the layer on three kinds of bottom",
+        "Bottom of the layer on dashpots, with and without springs",
         "time (s)",
         "downward displacement (mm)",
     );

@@ -5,9 +5,9 @@
 //! when the new force is (in the kick). What a kick gives the particles follows from the nodal
 //! equation of motion,
 //!
-//!   ΔK = h Σ m_i v_i · a_i + ½ h² Σ m_p |Σ N_i a_i|².
+//!   ΔK = h Σ m_i v_i · a'_i + ½ h² Σ m_p |Σ N_i a'_i|²
 //!
-//! `transfer` is the difference between the
+//! with a' the accelerations that particles receive. `transfer` is the difference between the
 //! trapezoidal work of all forces and this: what the lumped mass matrix and the average of the
 //! remap take (or give back). The work of stresses on the mesh differs from that in the
 //! particles by `integration` (σ̄ V_e against Σ σ_p V_p), `smoothing` (σ_m (Δε_v − Δε̄_v) V) and
@@ -144,7 +144,7 @@ pub struct Ledger {
     given: f64,
     /// Kinetic energy of the particles with their mid-step velocities, J.
     particles: f64,
-    /// h Σ m_i v_i · a_i of the last kick, J.
+    /// h Σ m_i v_i · a'_i of the last kick, J.
     gain: f64,
     /// What the second part of the last kick will be booked with in the coming drift.
     pending_gain: f64,
@@ -213,9 +213,13 @@ impl Ledger {
         self.now.kinetic_grid = work.kinetic;
     }
 
-    /// Second half of the last drift's work of nodal forces, and h Σ m_i v_i · a_i.
-    pub(crate) fn kick(&mut self, work: DriftWork, gain: f64) {
+    /// h Σ m_i v_i · a'_i of a kick.
+    pub(crate) fn receive(&mut self, gain: f64) {
         self.gain = gain;
+    }
+
+    /// Second half of the last drift's work of nodal forces.
+    pub(crate) fn kick(&mut self, work: DriftWork) {
         self.half(work);
     }
 

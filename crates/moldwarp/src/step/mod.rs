@@ -12,7 +12,7 @@
 //! | | 6 stress: rotation and material model | `stress` |
 //! | | 7 move: x_p += Σ N_i Δu_i; 8 mesh: follows, particles located | `advance` |
 //! | kick | 1 particles to nodes: masses, momenta, forces | `to_nodes` |
-//! | | 2 nodes: a_i = F_i / m_i, damping, boundaries | `nodes` |
+//! | | 2 nodes: a_i = F_i / m_i, damping, boundaries | `nodes`, `correction` |
 //! | | 3 nodes to particles: v_p += h Σ N_i a_i | `to_particles` |
 //!
 //! Jassim et al. Eq. 5–9 are the same cycle cut before stage 1; with equal steps the numbers are
@@ -22,6 +22,7 @@
 
 mod active;
 mod advance;
+mod correction;
 mod nodes;
 mod remap;
 mod state;
@@ -67,6 +68,7 @@ impl Simulation {
             before == 0.0 && self.clock.given_velocities,
         );
         nodes::run(self, before, after);
+        correction::receive(self, before + after);
         to_particles::run(self, before, after);
         Ok(dt)
     }

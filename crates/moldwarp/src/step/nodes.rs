@@ -29,11 +29,11 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     let (active, mesh, gravity, cells) = (&*active, &plan.mesh, plan.gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let (work, gain) = fold(items, BLOCK, &|(slots, nodes): (
+    let work = fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let (mut work, mut gain) = (DriftWork::default(), 0.0);
+        let mut work = DriftWork::default();
         for (slot, node) in slots.zip(nodes) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
@@ -78,14 +78,13 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 node.acceleration = constraint.free * node.acceleration + held;
             }
             node.reaction = node.acceleration * node.mass - force;
-            gain += h * node.mass * node.velocity.dot(node.acceleration);
             if before > 0.0 {
                 work.add(node, gravity);
             }
         }
-        (work, gain)
+        work
     });
-    ledger.kick(work, gain);
+    ledger.kick(work);
 }
 
 /// Loads on particles, at the shape functions of the points they act on.

@@ -12,6 +12,8 @@ pub struct Node {
     pub velocity: Vec3,
     /// (change of velocity in the kick) / h: F_i / m_i with all that holds the node, m/s².
     pub acceleration: Vec3,
+    /// What particles receive of it, corrected for averaging, m/s².
+    pub received: Vec3,
     /// Loads.
     pub load: Vec3,
     /// Local damping.
@@ -43,7 +45,7 @@ pub struct CellSums {
     pub momentum: [Vec3; 4],
     /// M_ij = Σ m_p N_i N_j of each pair of nodes: 01, 02, 03, 12, 13, 23, kg.
     pub pairs: [f64; 6],
-    /// Σ_j M_ij (v̄_i − v̄_j) of the averages for each node, kg m/s.
+    /// Σ_j M_ij (w_i − w_j) for each node, w being accelerations (N) or averages (kg m/s).
     pub exchange: [Vec3; 4],
     /// Σ σ_p V_p, J.
     pub stress: Voigt,

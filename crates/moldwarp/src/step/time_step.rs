@@ -1,6 +1,6 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
-use super::BLOCK;
+use super::{BLOCK, correction};
 use crate::parallel::{Smallest, fold};
 use crate::simulation::Simulation;
 use std::ops::Range;
@@ -45,7 +45,8 @@ pub(super) fn choose(sim: &Simulation) -> Result<f64, TimeStepError> {
 /// min h_e / c_e over all cells, s: h_e the shortest altitude, c_e the fastest P-wave speed
 /// present. In a filled cell the density is the nodes' (mass over element volume), since a full
 /// element that happens to hold few particles is as stiff as any; elsewhere stiffness and mass
-/// fade together and the particles' own density counts. Viscosity β lowers the step by
+/// fade together and the particles' own density counts, lowered by what the correction for
+/// averaging can stiffen (`correction::stiffening`). Viscosity β lowers the step by
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
 pub(crate) fn critical(sim: &Simulation) -> f64 {
     let Simulation {
@@ -55,6 +56,7 @@ pub(crate) fn critical(sim: &Simulation) -> f64 {
         cells,
         ..
     } = sim;
+    let partly = correction::stiffening(plan.numerics.mass);
     let stiffest = sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max);
     fold(0..cells.sums.len(), BLOCK, &|range: Range<usize>| {
         let mut smallest = Smallest::default();
@@ -72,7 +74,7 @@ pub(crate) fn critical(sim: &Simulation) -> f64 {
                     .sum::<f64>()
                     * 0.25
             } else if sum.volume > 0.0 {
-                sum.mass.iter().sum::<f64>() / sum.volume
+                sum.mass.iter().sum::<f64>() / (sum.volume * partly)
             } else {
                 continue;
             };

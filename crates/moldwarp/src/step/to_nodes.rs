@@ -1,6 +1,6 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
-use super::remap::PAIRS;
+use super::correction::PAIRS;
 use super::{BLOCK, CellForce, CellSums, Node};
 use crate::mesh::NONE;
 use crate::parallel::{ByCell, fold};

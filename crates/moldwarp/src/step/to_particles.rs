@@ -35,14 +35,14 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             sum.momentum = [Vec3::ZERO; 4];
             for p in active.offsets[c] as usize..active.offsets[c + 1] as usize {
                 let n = crate::mesh::barycentric(origin, &mesh.gradients[e], position[p]);
-                let a: Vec3 = (0..4).map(|i| corners[i].acceleration * n[i]).sum();
+                let a: Vec3 = (0..4).map(|i| corners[i].received * n[i]).sum();
                 let v = &mut block.particles[p - first];
                 let m = mass[p];
                 *v += a * h;
                 energy[0] += m * a.length_squared();
                 if blend > 0.0 {
                     let grid: Vec3 = (0..4)
-                        .map(|i| (corners[i].velocity + corners[i].acceleration * h) * n[i])
+                        .map(|i| (corners[i].velocity + corners[i].received * h) * n[i])
                         .sum();
                     let own = v.length_squared();
                     *v += (grid - *v) * blend;

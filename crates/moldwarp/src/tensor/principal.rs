@@ -26,73 +26,101 @@ pub struct Principal {
 /// Values are exact to a few units in the last place of the largest component, directions
 /// orthonormal to round-off. Where values coincide, the directions are some orthonormal choice.
 pub fn principal(s: &Voigt) -> Principal {
-    let mean = (s[0] + s[1] + s[2]) / 3.0;
-    let (x, y, z) = (s[0] - mean, s[1] - mean, s[2] - mean);
-    let largest = [x, y, z, s[3], s[4], s[5]]
-        .iter()
-        .fold(0.0, |m: f64, v| m.max(v.abs()));
-    // Also false for tensors that are not numbers, and where the reciprocal would overflow.
-    if !(largest >= 1e-300) {
-        return Principal {
-            values: [mean; 3],
-            directions: [Vec3::X, Vec3::Y, Vec3::Z],
-        };
+    let b = deviator(s);
+    let norm_squared = square(&b);
+    if (1e-100..1e100).contains(&norm_squared) {
+        return decompose(s, &b, norm_squared);
     }
-    let f = 1.0 / largest;
-    let b = [x * f, y * f, z * f, s[3] * f, s[4] * f, s[5] * f];
-    let norm_squared =
-        b[0] * b[0] + b[1] * b[1] + b[2] * b[2] + 2.0 * (b[3] * b[3] + b[4] * b[4] + b[5] * b[5]);
-    let unit = (norm_squared / 6.0).sqrt();
-    let determinant = b[0] * (b[1] * b[2] - b[4] * b[4]) - b[3] * (b[3] * b[2] - b[4] * b[5])
-        + b[5] * (b[3] * b[4] - b[1] * b[5]);
-    let half = 0.5 * determinant / (unit * unit * unit);
-    let shift = unit * lonely_root(half.abs().min(1.0)).copysign(half);
-
-    let lonely = lonely_direction(&b, shift);
-    let (u, w) = complement(lonely);
-    let (bl, bu, bw) = (
-        super::times(&b, lonely),
-        super::times(&b, u),
-        super::times(&b, w),
-    );
-    // A Jacobi rotation makes the 2×2 block diagonal.
-    let (uu, uw, ww) = (u.dot(bu), u.dot(bw), w.dot(bw));
-    let tangent = if uw == 0.0 {
-        0.0
+    // Zero, isotropic, tiny or huge: the components are brought to a size of which the powers
+    // are numbers.
+    let largest = s.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let scaled = s.map(|v| v / largest);
+    let b = deviator(&scaled);
+    let norm_squared = square(&b);
+    if norm_squared > 1e-34 {
+        let found = decompose(&scaled, &b, norm_squared);
+        Principal {
+            values: found.values.map(|v| v * largest),
+            ..found
+        }
     } else {
-        let t = 0.5 * (ww - uu) / uw;
-        1f64.copysign(t) / (t.abs() + (1.0 + t * t).sqrt())
-    };
-    let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
-    let sine = tangent * cosine;
-    let mut pairs = [
-        (lonely.dot(bl), lonely),
-        (uu - tangent * uw, u * cosine - w * sine),
-        (ww + tangent * uw, w * cosine + u * sine),
-    ];
-    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
-        if pairs[i].0 < pairs[j].0 {
-            pairs.swap(i, j);
+        Principal {
+            values: [s[0], s[1], s[2]],
+            directions: [Vec3::X, Vec3::Y, Vec3::Z],
         }
     }
+}
+
+/// s − tr s/3 I, but for round-off: any shift will do.
+#[inline]
+fn deviator(s: &Voigt) -> Voigt {
+    let mean = super::trace(s) * (1.0 / 3.0);
+    [s[0] - mean, s[1] - mean, s[2] - mean, s[3], s[4], s[5]]
+}
+
+/// b : b
+#[inline]
+fn square(b: &Voigt) -> f64 {
+    (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) + 2.0 * (b[3] * b[3] + b[4] * b[4] + b[5] * b[5])
+}
+
+/// `b` is the deviator of `s`. Without branches that depend on its values, as a wrongly
+/// predicted one costs as much as a fifth of all this.
+#[inline]
+fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
+    let unit_squared = norm_squared * (1.0 / 6.0);
+    let unit = unit_squared.sqrt();
+    let determinant = b[0] * (b[1] * b[2] - b[4] * b[4]) - b[3] * (b[3] * b[2] - b[4] * b[5])
+        + b[5] * (b[3] * b[4] - b[1] * b[5]);
+    let half = 0.5 * determinant / (unit * unit_squared);
+    let lonely = lonely_direction(b, unit * lonely_root(half.abs().min(1.0)).copysign(half));
+    let (u, w) = complement(lonely);
+
+    // A rotation by the half angle makes the 2×2 block of u and w diagonal, with values
+    // `centre` ± `radius`.
+    let (bu, bw) = (super::times(b, u), super::times(b, w));
+    let (uu, uw, ww) = (u.dot(bu), u.dot(bw), w.dot(bw));
+    let centre = 0.5 * (uu + ww);
+    let difference = 0.5 * (ww - uu);
+    let radius = (difference * difference + uw * uw).sqrt();
+    // Equal values, far below round-off: no rotation.
+    let (cosine, sine) = if radius > 1e-20 * unit {
+        (difference.abs() / radius, uw / radius)
+    } else {
+        (1.0, 0.0)
+    };
+    let large = (0.5 + 0.5 * cosine).sqrt();
+    let small = 0.5 * sine / large;
+    let (f, g) = if difference >= 0.0 {
+        (small, large)
+    } else {
+        (large, small)
+    };
+    let (high, low) = (u * f + w * g, u * g - w * f);
+
+    // The lonely value is first or last.
+    let mean = s[0] - b[0];
+    let alone = lonely.dot(super::times(b, lonely));
+    let first = usize::from(half < 0.0);
+    let values = [alone, centre + radius, centre - radius, alone];
+    let directions = [lonely, high, low, lonely];
     Principal {
-        values: pairs.map(|p| mean + largest * p.0),
-        directions: pairs.map(|p| p.1),
+        values: std::array::from_fn(|i| mean + values[first + i]),
+        directions: std::array::from_fn(|i| directions[first + i]),
     }
 }
 
 /// The largest root of β³ − 3β = 2h for 0 ≤ h ≤ 1, 2 cos(arccos(h) / 3).
 #[inline]
 fn lonely_root(h: f64) -> f64 {
-    const SQRT_3: f64 = 1.732_050_807_568_877_2;
-    // Value and slope at h = 0 and the value at h = 1 are exact: off by 1e-2 at most, and each
-    // step squares that error.
-    let mut root = SQRT_3 + h * (1.0 / 3.0 + h * (2.0 - SQRT_3 - 1.0 / 3.0));
-    for _ in 0..3 {
-        let square = root * root;
-        root -= (root * (square - 3.0) - 2.0 * h) / (3.0 * square - 3.0);
-    }
-    root
+    // Interpolates in Chebyshev points, off by at most 1e-5. A Newton step squares that error;
+    // the second one can keep the slope of the first.
+    let start = (1.732_060_86 + h * 0.332_823_44)
+        + (h * h) * ((h * 0.035_024_38 - 0.091_843_87) - (h * h) * 0.008_070_8);
+    let over_slope = 1.0 / (3.0 * start * start - 3.0);
+    let excess = |root: f64| root * (root * root - 3.0) - 2.0 * h;
+    let root = start - excess(start) * over_slope;
+    root - excess(root) * over_slope
 }
 
 /// Direction of a simple principal value: the longest column of the adjugate of B − value I.
@@ -103,26 +131,29 @@ fn lonely_direction(b: &Voigt, value: f64) -> Vec3 {
         Vec3::new(b[3], b[1] - value, b[4]),
         Vec3::new(b[5], b[4], b[2] - value),
     ];
-    let mut longest = rows[0].cross(rows[1]);
-    let mut square = longest.length_squared();
-    for other in [rows[1].cross(rows[2]), rows[2].cross(rows[0])] {
-        if other.length_squared() > square {
-            longest = other;
-            square = other.length_squared();
-        }
-    }
-    longest / square.sqrt()
+    // Column i is vᵢ v times the product of the distances to the other values.
+    let columns = [
+        rows[1].cross(rows[2]),
+        rows[2].cross(rows[0]),
+        rows[0].cross(rows[1]),
+    ];
+    let (x, y, z) = (columns[0].x, columns[1].y, columns[2].z);
+    let xy = usize::from(y > x);
+    let longest = columns[if z > x.max(y) { 2 } else { xy }];
+    longest * (1.0 / longest.length())
 }
 
-/// Two unit vectors at right angles to the unit vector `n` and to each other.
+/// Two unit vectors at right angles to the unit vector `n` and to each other (T. Duff et al.,
+/// "Building an orthonormal basis, revisited", 2017).
 #[inline]
 fn complement(n: Vec3) -> (Vec3, Vec3) {
-    let u = if n.x.abs() > n.y.abs() {
-        Vec3::new(-n.z, 0.0, n.x) / (n.x * n.x + n.z * n.z).sqrt()
-    } else {
-        Vec3::new(0.0, n.z, -n.y) / (n.y * n.y + n.z * n.z).sqrt()
-    };
-    (u, n.cross(u))
+    let sign = 1f64.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    (
+        Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+        Vec3::new(b, sign + n.y * n.y * a, -n.y),
+    )
 }
 
 #[cfg(test)]
@@ -180,10 +211,10 @@ mod tests {
     #[test]
     fn special_tensors() {
         assert_eq!(principal(&[0.0; 6]).values, [0.0; 3]);
-        assert_eq!(
-            principal(&[7.0, 7.0, 7.0, 0.0, 0.0, 0.0]).values,
-            [7.0, 7.0, 7.0]
-        );
+        for p in [7.0, -1e5 / 3.0, 1e-200, 1e200] {
+            let found = principal(&[p, p, p, 0.0, 0.0, 0.0]);
+            assert!(found.values.iter().all(|v| (v / p - 1.0).abs() < 1e-15));
+        }
         for tiny_or_huge in [1e-290, 1e-200, 1e200, 1e290] {
             let found = principal(&[0.0, 0.0, 0.0, tiny_or_huge, 0.0, 0.0]);
             for (a, b) in found.values.iter().zip([1.0, 0.0, -1.0]) {

@@ -64,8 +64,8 @@ fn square(b: &Voigt) -> f64 {
     (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) + 2.0 * (b[3] * b[3] + b[4] * b[4] + b[5] * b[5])
 }
 
-/// `b` is the deviator of `s`. Without branches that depend on its values, as a wrongly
-/// predicted one costs as much as a fifth of all this.
+/// `b` is the deviator of `s`. Choices that depend on its values are made by index, not by
+/// branches, which random stresses would predict wrongly.
 #[inline]
 fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let unit_squared = norm_squared * (1.0 / 6.0);
@@ -131,7 +131,7 @@ fn lonely_direction(b: &Voigt, value: f64) -> Vec3 {
         Vec3::new(b[3], b[1] - value, b[4]),
         Vec3::new(b[5], b[4], b[2] - value),
     ];
-    // Column i is vᵢ v times the product of the distances to the other values.
+    // Column i is vᵢ v times the product of the distances to the other values, which is positive.
     let columns = [
         rows[1].cross(rows[2]),
         rows[2].cross(rows[0]),

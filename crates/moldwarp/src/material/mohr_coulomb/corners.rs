@@ -143,22 +143,19 @@ impl Corners {
 
     /// The admissible stress of a sorted predictor `t` outside the surface.
     pub(super) fn return_map(&self, t: &[f64; 3]) -> Found {
-        let mut best = Found {
-            stress: *t,
-            corner: Corner::Plane,
-            opening: 0.0,
-            violation: f64::INFINITY,
-        };
+        // Most often.
+        let mut best = self.onto_plane(t);
+        if best.violation <= 0.0 {
+            return best;
+        }
         let tries: &[fn(&Corners, &[f64; 3]) -> Found] = if !self.has_cutoff {
             &[
-                Corners::onto_plane,
                 Corners::onto_upper_edge,
                 Corners::onto_lower_edge,
                 Corners::onto_apex,
             ]
         } else {
             &[
-                Corners::onto_plane,
                 Corners::onto_upper_edge,
                 Corners::onto_lower_edge,
                 Corners::onto_cutoff_plane,

@@ -68,7 +68,8 @@ pub struct MohrCoulomb {
     elastic: LinearElastic,
     parameters: MohrCoulombParameters,
     corners: Corners,
-    /// G and K, Pa.
+    /// λ, G and K, Pa.
+    lame: f64,
     shear_modulus: f64,
     bulk_modulus: f64,
     /// √(1 + sin²φ/3): the cone within the pyramid.
@@ -180,6 +181,7 @@ impl MohrCoulomb {
             elastic,
             parameters,
             corners,
+            lame: elastic.lame(),
             shear_modulus: elastic.shear_modulus(),
             bulk_modulus: elastic.lame() + 2.0 / 3.0 * elastic.shear_modulus(),
             cone: (1.0 + sin * sin / 3.0).sqrt(),
@@ -219,7 +221,7 @@ impl MohrCoulomb {
         let step = if self.is_open(stress, state) {
             self.open_step(stress, strain, state.opening)
         } else {
-            self.return_map(&self.elastic.update(stress, strain))
+            self.return_map(&self.predictor(stress, strain))
         };
         state.yielding = step.yielding;
         if step.yielding != YieldState::Elastic {
@@ -236,6 +238,12 @@ impl MohrCoulomb {
         if self.surely_elastic(trial) {
             return PlasticStep::elastic(*trial);
         }
+        self.return_unsure(trial)
+    }
+
+    /// Apart, so that the elastic case is small enough for its caller to take in.
+    #[inline(never)]
+    fn return_unsure(&self, trial: &Voigt) -> PlasticStep {
         let principal = tensor::principal(trial);
         let [largest, _, smallest] = principal.values;
         if self.corners.yield_function(largest, smallest) <= 0.0 {
@@ -298,6 +306,7 @@ impl MohrCoulomb {
     }
 
     /// A step of open material, see the module's text.
+    #[inline(never)]
     fn open_step(&self, stress: &Voigt, strain: &Voigt, opening: f64) -> PlasticStep {
         let tip = self.corners.tip();
         let volumetric = tensor::trace(strain);
@@ -313,7 +322,7 @@ impl MohrCoulomb {
                 0.0
             };
             let rest: Voigt = std::array::from_fn(|k| share * strain[k]);
-            step = self.return_map(&self.elastic.update(&[0.0; 6], &rest));
+            step = self.return_map(&self.predictor(&[0.0; 6], &rest));
             step.opening -= opening;
         } else {
             let new = trial.clamp(0.0, tip);
@@ -327,6 +336,20 @@ impl MohrCoulomb {
             step.yielding = YieldState::Tension;
         }
         step
+    }
+
+    /// [`LinearElastic::update`] with its moduli at hand.
+    #[inline]
+    fn predictor(&self, stress: &Voigt, strain: &Voigt) -> Voigt {
+        let (mean, shear) = (self.lame * tensor::trace(strain), self.shear_modulus);
+        std::array::from_fn(|k| {
+            stress[k]
+                + if k < 3 {
+                    mean + 2.0 * shear * strain[k]
+                } else {
+                    shear * strain[k]
+                }
+        })
     }
 
     /// C⁻¹ σ, with engineering shear strains.

@@ -14,6 +14,8 @@ pub mod mesh;
 mod parallel;
 pub mod particles;
 pub mod plan;
+#[cfg(test)]
+mod random;
 mod simulation;
 pub mod step;
 pub mod tensor;

@@ -3,6 +3,10 @@
 //! Order xx, yy, zz, xy, yz, zx. Stresses hold the tensor's components, strains hold engineering
 //! shear strains (twice the tensor's), so that [`dot`] of a stress and a strain is σ : ε.
 
+mod principal;
+
+pub use principal::{Principal, principal};
+
 use crate::{Mat3, Vec3};
 
 /// Six components, xx, yy, zz, xy, yz, zx.

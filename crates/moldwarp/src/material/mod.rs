@@ -1,8 +1,12 @@
 //! Constitutive models. One file a model: equations, source, update, wave speed, tests.
 
 mod linear_elastic;
+mod mohr_coulomb;
 
 pub use linear_elastic::LinearElastic;
+pub use mohr_coulomb::{
+    MohrCoulomb, MohrCoulombParameters, MohrCoulombState, ParameterError, PlasticStep, YieldState,
+};
 
 use crate::tensor::Voigt;
 

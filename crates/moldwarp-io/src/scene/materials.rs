@@ -4,10 +4,12 @@ use super::amount::Named;
 use super::error::Fault;
 use super::quantity::Dimension;
 use super::raw::{RawMaterial, Text};
-use super::unsupported;
-use super::values::{amount, choose, exactly_one, placed, positive, required, span};
-use moldwarp::material::{LinearElastic, Material};
+use super::values::{amount, choose, exactly_one, foreign, placed, positive, required, span};
+use moldwarp::material::{
+    LinearElastic, Material, MohrCoulomb, MohrCoulombParameters, ParameterError,
+};
 use moldwarp::plan::NamedMaterial;
+use std::ops::Range;
 
 /// What a unit weight is divided by, whatever the scene's gravity is, m/s².
 const STANDARD_GRAVITY: f64 = 9.81;
@@ -25,16 +27,36 @@ pub(super) fn materials(raw: &Named<RawMaterial>) -> Result<Vec<NamedMaterial>, 
         .collect()
 }
 
+#[derive(Clone, Copy)]
+enum Model {
+    LinearElastic,
+    MohrCoulomb,
+}
+
 fn model(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
-    choose(
-        placed(&raw.model),
-        "model",
-        &[("linear-elastic", ())],
-        &unsupported::MODELS,
-    )?;
-    let owner = || (name.span(), "a linear-elastic material");
-    let young = required(owner(), "young_modulus", &raw.young_modulus, "\"100 kPa\"")?;
-    let poisson = required(owner(), "poisson_ratio", &raw.poisson_ratio, "0.3")?;
+    let models = [
+        ("linear-elastic", Model::LinearElastic),
+        ("mohr-coulomb", Model::MohrCoulomb),
+    ];
+    match choose(placed(&raw.model), "model", &models, &[])? {
+        Model::LinearElastic => {
+            let plastic = [
+                ("cohesion", span(&raw.cohesion)),
+                ("friction_angle", span(&raw.friction_angle)),
+                ("dilation_angle", span(&raw.dilation_angle)),
+                ("tension_cutoff", span(&raw.tension_cutoff)),
+            ];
+            foreign(&raw.model, &plastic)?;
+            elastic((name.span(), "a linear-elastic material"), raw).map(Material::LinearElastic)
+        }
+        Model::MohrCoulomb => mohr_coulomb(name, raw),
+    }
+}
+
+fn elastic(owner: (Range<usize>, &str), raw: &RawMaterial) -> Result<LinearElastic, Fault> {
+    let need = |key: &str, value, example| required(owner.clone(), key, value, example);
+    let young = need("young_modulus", &raw.young_modulus, "\"100 kPa\"")?;
+    let poisson = need("poisson_ratio", &raw.poisson_ratio, "0.3")?;
     let poisson_ratio = amount("poisson_ratio", poisson, Dimension::Number)?;
     if poisson_ratio <= -1.0 || poisson_ratio >= 0.5 {
         return Err(
@@ -43,10 +65,50 @@ fn model(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
                 .help("0.5 is incompressible, which takes infinitely small steps; 0.49 is close"),
         );
     }
-    Ok(Material::LinearElastic(LinearElastic {
+    Ok(LinearElastic {
         young_modulus: positive("young_modulus", young, Dimension::Stress)?,
         poisson_ratio,
-    }))
+    })
+}
+
+fn mohr_coulomb(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
+    let owner = (name.span(), "a Mohr-Coulomb material");
+    let elastic = elastic(owner.clone(), raw)?;
+    let need = |key: &str, value, example| required(owner.clone(), key, value, example);
+    let cohesion = need("cohesion", &raw.cohesion, "\"5 kPa\"")?;
+    let friction = need("friction_angle", &raw.friction_angle, "\"30 deg\"")?;
+    let optional = |key: &str, value: &Option<_>, dimension| {
+        value
+            .as_ref()
+            .map(|v| amount(key, v, dimension))
+            .transpose()
+    };
+    let dilation = optional("dilation_angle", &raw.dilation_angle, Dimension::Angle)?;
+    let parameters = MohrCoulombParameters {
+        cohesion: amount("cohesion", cohesion, Dimension::Stress)?,
+        friction_angle: amount("friction_angle", friction, Dimension::Angle)?,
+        dilation_angle: dilation.unwrap_or(0.0),
+        tension_cutoff: optional("tension_cutoff", &raw.tension_cutoff, Dimension::Stress)?,
+    };
+    let model = MohrCoulomb::new(elastic, parameters);
+    model.map(Material::MohrCoulomb).map_err(|error| {
+        // What is wrong stands at the value that is, or at the material that lacks one.
+        let place = match &error {
+            ParameterError::FrictionAngle(_) => Some(friction.span()),
+            ParameterError::DilationAngle { .. } => span(&raw.dilation_angle),
+            ParameterError::Cohesion(_) | ParameterError::NoStrength => Some(cohesion.span()),
+            ParameterError::CutoffMissing => None,
+            ParameterError::Cutoff(_) | ParameterError::CutoffAboveApex { .. } => {
+                span(&raw.tension_cutoff)
+            }
+        };
+        let label = if place.is_some() {
+            "here"
+        } else {
+            "`tension_cutoff` is missing"
+        };
+        Fault::new(error.to_string()).at(place.unwrap_or(name.span()), label)
+    })
 }
 
 fn density(name: &Text, raw: &RawMaterial) -> Result<f64, Fault> {

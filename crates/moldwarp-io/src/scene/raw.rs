@@ -57,6 +57,10 @@ pub(super) struct RawMaterial {
     pub model: Text,
     pub young_modulus: Option<RawAmount>,
     pub poisson_ratio: Option<RawAmount>,
+    pub cohesion: Option<RawAmount>,
+    pub friction_angle: Option<RawAmount>,
+    pub dilation_angle: Option<RawAmount>,
+    pub tension_cutoff: Option<RawAmount>,
     pub unit_weight: Option<RawAmount>,
     pub density: Option<RawAmount>,
 }

@@ -1,14 +1,10 @@
 //! What the scene format has a name for but this version cannot compute.
 
 /// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
-const KEYS: [(&str, &str); 15] = [
+const KEYS: [(&str, &str); 11] = [
     ("contacts", "gravity"),
     ("symmetry", "gravity"),
     ("cylinder", "box"),
-    ("cohesion", "young_modulus"),
-    ("friction_angle", "young_modulus"),
-    ("dilation_angle", "young_modulus"),
-    ("tension_cutoff", "young_modulus"),
     ("particle_spacing", "particles_per_element"),
     ("until", "duration"),
     ("on", "duration"),
@@ -19,8 +15,6 @@ const KEYS: [(&str, &str); 15] = [
     ("checkpoint_interval", "frames"),
 ];
 
-/// Materials.
-pub(super) const MODELS: [&str; 1] = ["mohr-coulomb"];
 /// Boundaries.
 pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];
 /// What probes record.

@@ -11,7 +11,7 @@ pub use mohr_coulomb::{
 use crate::tensor::Voigt;
 
 /// Most state variables that a model may keep per particle.
-pub const STATE_SIZE: usize = 3;
+pub const STATE_SIZE: usize = 4;
 
 /// A particle's state variables; what they are is its model's affair. All zero at the start.
 pub type State = [f64; STATE_SIZE];
@@ -33,20 +33,24 @@ pub struct Update {
 }
 
 /// A material model with its parameters.
+// A plan has few materials; a box would cost the step an indirection per particle.
+#[expect(clippy::large_enum_variant)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Material {
     LinearElastic(LinearElastic),
+    MohrCoulomb(MohrCoulomb),
 }
 
 impl Material {
     /// Stress after a strain increment. `stress` (Pa) has been rotated by the step's spin.
     #[inline]
-    pub fn update(&self, stress: &Voigt, strain: &Voigt, _state: &mut State) -> Update {
+    pub fn update(&self, stress: &Voigt, strain: &Voigt, state: &mut State) -> Update {
         match self {
             Material::LinearElastic(elastic) => Update {
                 stress: elastic.update(stress, strain),
                 plastic_strain: [0.0; 6],
             },
+            Material::MohrCoulomb(soil) => soil.update_particle(stress, strain, state),
         }
     }
 
@@ -54,6 +58,16 @@ impl Material {
     pub fn state_fields(&self) -> &'static [StateField] {
         match self {
             Material::LinearElastic(_) => &[],
+            Material::MohrCoulomb(_) => &mohr_coulomb::STATE_FIELDS,
+        }
+    }
+
+    /// Share of a particle's volume that is soil: the rest has opened in tension and holds none.
+    #[inline]
+    pub fn solid_share(&self, state: &State) -> f64 {
+        match self {
+            Material::LinearElastic(_) => 1.0,
+            Material::MohrCoulomb(_) => mohr_coulomb::solid_share(state),
         }
     }
 
@@ -61,6 +75,7 @@ impl Material {
     pub fn elasticity(&self) -> &LinearElastic {
         match self {
             Material::LinearElastic(elastic) => elastic,
+            Material::MohrCoulomb(soil) => soil.elastic(),
         }
     }
 }

@@ -77,7 +77,7 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{LinearElastic, Material};
+    use crate::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParameters};
     use crate::mesh::box_mesh;
     use crate::plan::*;
     use crate::tensor::{equivalent, to_matrix, trace};
@@ -167,6 +167,49 @@ mod tests {
         {
             assert!((now / before - 1.0).abs() < 1e-10);
         }
+    }
+
+    /// Soil that is sheared and compressed homogeneously: every particle follows the stress point's
+    /// path, and the works in the ledger are its works.
+    #[test]
+    fn plastic_work_is_booked() {
+        let mut sim = cube(2);
+        let elastic = LinearElastic {
+            young_modulus: 1e7,
+            poisson_ratio: 0.3,
+        };
+        let parameters = MohrCoulombParameters {
+            cohesion: 5e3,
+            friction_angle: 0.5,
+            dilation_angle: 0.1,
+            tension_cutoff: None,
+        };
+        let soil = MohrCoulomb::new(elastic, parameters).unwrap();
+        sim.plan.materials[0].model = Material::MohrCoulomb(soil);
+        let rate = Mat3::from_diagonal(Vec3::new(2e-5, -1e-5, -6e-5));
+        let (mut stress, mut state) = ([0.0; 6], crate::material::State::default());
+        for _ in 0..200 {
+            for (node, &n) in sim.nodes.iter_mut().zip(&sim.active.nodes) {
+                node.moved = rate * sim.plan.mesh.nodes[n as usize];
+            }
+            strain::run(&mut sim);
+            stress::run(&mut sim);
+            let midpoint = rate * (Mat3::IDENTITY + rate * 0.5).inverse();
+            let increment = crate::tensor::strain(&midpoint);
+            let model = &sim.plan.materials[0].model;
+            stress = model.update(&stress, &increment, &mut state).stress;
+        }
+        assert!(state[0] > 1e-3, "the soil yields");
+        for (own, values) in sim.particles.stress.iter().zip(&sim.particles.state) {
+            assert!(own.iter().zip(stress).all(|(a, b)| (a - b).abs() < 1e-6));
+            assert!((values[0] - state[0]).abs() < 1e-12);
+        }
+        let energies = sim.energies();
+        assert!(energies.plastic > 0.0 && energies.elastic > 0.0);
+        // σ : Δε^p V of the last step, from the stress point, bounds the mean of the ledger's.
+        let volume: f64 = sim.particles.volume.iter().sum();
+        let bound = -stress[2] * 200.0 * 6e-5 * volume;
+        assert!(energies.plastic + energies.elastic < bound);
     }
 
     /// A thrown, spinning and quivering body: its mass on the nodes is its particles' to 1e-14,

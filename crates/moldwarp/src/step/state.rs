@@ -51,6 +51,8 @@ pub struct CellSums {
     pub stress: Voigt,
     /// Σ V_p, m³.
     pub volume: f64,
+    /// Σ V_p without what has opened in tension, m³: it judges filling.
+    pub solid: f64,
     /// Σ λ V_p and Σ G V_p, J.
     pub moduli: [f64; 2],
     /// Greatest constrained modulus of its particles, Pa.

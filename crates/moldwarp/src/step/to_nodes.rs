@@ -57,7 +57,10 @@ fn sum_cells(sim: &mut Simulation) {
                 let volume = particles.volume[p];
                 add_scaled(&mut sum.stress, &particles.stress[p], volume);
                 sum.volume += volume;
-                let [lame, shear, wave] = elasticity[particles.body[p] as usize];
+                let body = particles.body[p] as usize;
+                let model = &plan.materials[plan.bodies[body].material].model;
+                sum.solid += volume * model.solid_share(&particles.state[p]);
+                let [lame, shear, wave] = elasticity[body];
                 sum.moduli[0] += lame * volume;
                 sum.moduli[1] += shear * volume;
                 sum.wave_modulus = sum.wave_modulus.max(wave);
@@ -87,7 +90,7 @@ fn sum_nodes(sim: &mut Simulation) {
                 let sum = &sums[c as usize];
                 mass += sum.mass[local as usize];
                 momentum += sum.momentum[local as usize];
-                volume += sum.volume;
+                volume += sum.solid;
                 all_mass += sum.mass[0] + sum.mass[1] + sum.mass[2] + sum.mass[3];
             }
             let whole = volumes[active.nodes[slot] as usize];

@@ -7,6 +7,12 @@ fn case(title: &str, old: &str, new: &str) -> String {
     entry(title, &with(old, new), &[])
 }
 
+/// The sample's soil as Mohr-Coulomb material with these strength parameters.
+fn mohr_coulomb(title: &str, strength: &str) -> String {
+    let model = format!("\"mohr-coulomb\"\n{strength}");
+    case(title, "\"linear-elastic\"", &model)
+}
+
 fn entry(title: &str, text: &str, sets: &[&str]) -> String {
     match read(text, sets) {
         Ok(_) => panic!("no error: {title}"),
@@ -90,7 +96,36 @@ fn materials_and_bodies() {
         ),
         case("no density", "unit_weight = \"18 kN/m3\"\n", ""),
         case("zero weight", "\"18 kN/m3\"", "0"),
-        case("model for later", "\"linear-elastic\"", "\"mohr-coulomb\""),
+        case("strength missing", "\"linear-elastic\"", "\"mohr-coulomb\""),
+        mohr_coulomb(
+            "friction of 90 degrees",
+            "cohesion = 0\nfriction_angle = \"90 deg\"",
+        ),
+        mohr_coulomb(
+            "more dilation than friction",
+            "cohesion = 0\nfriction_angle = \"30 deg\"\ndilation_angle = \"31 deg\"",
+        ),
+        mohr_coulomb(
+            "cut-off above the apex",
+            "cohesion = \"1 kPa\"\nfriction_angle = \"45 deg\"\ntension_cutoff = \"1.1 kPa\"",
+        ),
+        mohr_coulomb(
+            "Tresca without cut-off",
+            "cohesion = \"10 kPa\"\nfriction_angle = 0",
+        ),
+        mohr_coulomb(
+            "negative cohesion",
+            "cohesion = \"-1 kPa\"\nfriction_angle = \"30 deg\"",
+        ),
+        mohr_coulomb(
+            "no strength",
+            "cohesion = 0\nfriction_angle = 0\ntension_cutoff = 0",
+        ),
+        case(
+            "strength of an elastic material",
+            "unit_weight",
+            "cohesion = \"1 kPa\"\nunit_weight",
+        ),
         case("misspelt model", "\"linear-elastic\"", "\"linear-elastc\""),
         case("misspelt volume", "volume = \"box\"", "volume = \"bax\""),
         case(

@@ -51,12 +51,14 @@
 
 mod corners;
 mod parameters;
+mod particle;
 #[cfg(test)]
 mod paths;
 #[cfg(test)]
 mod return_tests;
 
 pub use parameters::{MohrCoulombParameters, ParameterError};
+pub(super) use particle::{STATE_FIELDS, solid_share};
 
 use super::LinearElastic;
 use crate::tensor::{self, Voigt};

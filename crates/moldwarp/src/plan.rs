@@ -223,12 +223,13 @@ pub enum Integration {
     Particle,
 }
 
-/// How nodal velocities come from particles in the remap.
+/// How velocities go between nodes and particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MassMatrix {
-    /// The average Σ m_p v_p N_i / m_i, corrected for what averaging takes from short waves.
+    /// Averages and the accelerations that particles receive, both corrected for what averaging
+    /// takes from short waves.
     Corrected,
-    /// The average alone, with the lumped matrix (Jassim et al. Eq. 6).
+    /// Without correction, with the lumped matrix (Jassim et al. Eq. 6).
     Lumped,
 }
 

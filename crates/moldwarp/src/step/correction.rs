@@ -31,7 +31,7 @@ const CORRECTION: f64 = 0.8;
 
 /// How much stiffer for its mass a partly filled cell can be than a full one, as a factor on ω².
 /// Motions that a few particles hardly resolve have M small against the lumped mass; there B is
-/// 1 + θ, and it acts twice. In full cells M B² is at most 1.07 of the lumped mass.
+/// 1 + θ, and it acts twice. In full cells M B² is at most 1.08 of the lumped mass.
 pub(super) fn stiffening(mass: MassMatrix) -> f64 {
     match mass {
         MassMatrix::Lumped => 1.0,

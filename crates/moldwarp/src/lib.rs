@@ -14,6 +14,7 @@ pub mod mesh;
 mod parallel;
 pub mod particles;
 pub mod plan;
+mod query;
 #[cfg(test)]
 mod random;
 mod simulation;
@@ -24,7 +25,8 @@ pub use material::Material;
 pub use mesh::Mesh;
 pub use particles::Particles;
 pub use plan::Plan;
-pub use simulation::{NodeFields, SetupError, Simulation, Stop};
+pub use query::NodeFields;
+pub use simulation::{SetupError, Simulation, Stop};
 
 /// A point, a vector: x, y, z.
 pub type Vec3 = glam::DVec3;

@@ -1,0 +1,159 @@
+//! What can be asked of a simulation.
+
+use crate::Vec3;
+use crate::measure::{Energies, Probes};
+use crate::mesh::Mesh;
+use crate::particles::Particles;
+use crate::plan::Plan;
+use crate::simulation::Simulation;
+use crate::step::Node;
+use crate::tensor::Voigt;
+
+/// Fields over all nodes of the mesh; zero where there is no material.
+#[derive(Clone, Debug)]
+pub struct NodeFields {
+    /// m/s.
+    pub velocity: Vec<Vec3>,
+    /// kg.
+    pub mass: Vec<f64>,
+    /// Force of boundaries on the material, N.
+    pub reaction: Vec<Vec3>,
+}
+
+impl Simulation {
+    /// Whether all stages are done.
+    pub fn finished(&self) -> bool {
+        self.clock.stage >= self.plan.stages.len()
+    }
+
+    /// Time since the start, s.
+    pub fn time(&self) -> f64 {
+        self.clock.time
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> u64 {
+        self.clock.steps
+    }
+
+    /// Length of the last step, s; 0 before the first.
+    pub fn time_step(&self) -> f64 {
+        self.clock.dt
+    }
+
+    /// Length of the coming step, s.
+    pub fn next_time_step(&self) -> f64 {
+        self.clock.next
+    }
+
+    /// Courant number times the critical step of the present state, s, whatever is forced.
+    pub fn stable_time_step(&self) -> f64 {
+        self.plan.numerics.courant * crate::step::critical(self)
+    }
+
+    /// Number of the stage, counted from 0; the number of stages when all are done.
+    pub fn stage(&self) -> usize {
+        self.clock.stage
+    }
+
+    /// Time since the stage's start, s.
+    pub fn stage_time(&self) -> f64 {
+        self.clock.stage_time
+    }
+
+    /// The plan, with the mesh as it is now.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The mesh as it is now.
+    pub fn mesh(&self) -> &Mesh {
+        &self.plan.mesh
+    }
+
+    pub fn particles(&self) -> &Particles {
+        &self.particles
+    }
+
+    /// Number of elements that take part in the step.
+    pub fn active_elements(&self) -> usize {
+        self.active.elements.len()
+    }
+
+    /// Energies since the start, J.
+    pub fn energies(&self) -> Energies {
+        self.ledger.energies()
+    }
+
+    /// The energy turned over so far, J, against which errors are judged.
+    pub fn energy_turned_over(&self) -> f64 {
+        self.ledger.turned_over()
+    }
+
+    /// Sum of the nodal masses, kg.
+    pub fn nodal_mass(&self) -> f64 {
+        self.nodes.iter().map(|n| n.mass).sum()
+    }
+
+    /// Name and unit of each probe's columns.
+    pub fn probe_columns(&self) -> Vec<(String, &'static str)> {
+        Probes::columns(&self.plan)
+    }
+
+    /// Appends the probes' values, in the order of the columns.
+    pub fn probe_values(&self, out: &mut Vec<f64>) {
+        self.probes.values(self, out);
+    }
+
+    /// Fields over all nodes of the mesh.
+    pub fn node_fields(&self) -> NodeFields {
+        let count = self.plan.mesh.nodes.len();
+        let zero = vec![Vec3::ZERO; count];
+        let mut fields = NodeFields {
+            velocity: zero.clone(),
+            mass: vec![0.0; count],
+            reaction: zero,
+        };
+        for (node, &n) in self.nodes.iter().zip(&self.active.nodes) {
+            fields.velocity[n as usize] = node.grid_velocity;
+            fields.mass[n as usize] = node.mass;
+            fields.reaction[n as usize] = node.reaction + node.absorbing;
+        }
+        fields
+    }
+
+    /// A mesh node, if particles touch it.
+    pub(crate) fn node(&self, mesh_node: u32) -> Option<&Node> {
+        self.nodes
+            .get(self.active.slot_of_node[mesh_node as usize] as usize)
+    }
+
+    /// Mean stress of the particles in an element, Pa, if there are any.
+    pub(crate) fn element_stress(&self, e: u32) -> Option<Voigt> {
+        let (first, last) = (
+            self.order.offsets[e as usize],
+            self.order.offsets[e as usize + 1],
+        );
+        let (mut stress, mut volume) = ([0.0; 6], 0.0);
+        for p in first as usize..last as usize {
+            crate::tensor::add_scaled(
+                &mut stress,
+                &self.particles.stress[p],
+                self.particles.volume[p],
+            );
+            volume += self.particles.volume[p];
+        }
+        (volume > 0.0).then(|| stress.map(|s| s / volume))
+    }
+
+    /// Σ N_i a_i at a particle, m/s².
+    pub(crate) fn acceleration_at(&self, p: usize) -> Vec3 {
+        let e = self.particles.element[p] as usize;
+        let n = self.plan.mesh.barycentric(e, self.particles.position[p]);
+        let corner = |i: usize| {
+            self.node(self.plan.mesh.tets[e][i])
+                .map_or(Vec3::ZERO, |n| n.acceleration)
+        };
+        (0..4).map(|i| corner(i) * n[i]).sum()
+    }
+}

@@ -97,7 +97,9 @@ pub struct Simulation {
     pub(crate) ledger: Ledger,
     pub(crate) probes: Probes,
     pub(crate) clock: Clock,
+    /// Nodes before the last renumbering and their mesh nodes, kept so that no step allocates.
     spare_nodes: Vec<Node>,
+    spare_numbers: Vec<u32>,
 }
 
 impl Simulation {
@@ -143,6 +145,7 @@ impl Simulation {
             probes,
             clock: Clock::default(),
             spare_nodes: Vec::new(),
+            spare_numbers: Vec::new(),
         };
         simulation.activate();
         simulation.begin_stage().map_err(|stop| match stop {
@@ -266,11 +269,11 @@ impl Simulation {
     fn activate(&mut self) {
         // The last drift of nodes that stay active is still needed for its work.
         std::mem::swap(&mut self.nodes, &mut self.spare_nodes);
-        let old: Vec<u32> = std::mem::take(&mut self.active.nodes);
+        std::mem::swap(&mut self.active.nodes, &mut self.spare_numbers);
         self.active.rebuild(&self.plan.mesh, &self.order.offsets);
         self.nodes.clear();
         self.nodes.resize(self.active.nodes.len(), Node::default());
-        for (node, &mesh_node) in self.spare_nodes.iter().zip(&old) {
+        for (node, &mesh_node) in self.spare_nodes.iter().zip(&self.spare_numbers) {
             if let Some(new) = self
                 .nodes
                 .get_mut(self.active.slot_of_node[mesh_node as usize] as usize)

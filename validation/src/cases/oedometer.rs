@@ -4,6 +4,9 @@
 //! area the column comes to rest at l = l₀ exp(−p/E_c): 0.6065 l₀ for p = E_c/2. Every layer is
 //! compressed alike; the particles of the loaded element, whose mesh is no longer full, are
 //! reported by themselves.
+//!
+//! Only the state at rest is compared: during the ramp local damping holds the column back, the
+//! more the finer the mesh, and the plotted curves lie above the exact one until the end.
 
 use crate::setup;
 use crate::{Fidelity, Plot, Report, Table};
@@ -57,12 +60,12 @@ pub fn run(fidelity: Fidelity) -> Report {
         report.check(
             format!("{n} elements: error of the middle half's stretch"),
             error.abs(),
-            5e-3,
+            2e-3,
         );
         report.check(
             format!("{n} elements: error of the middle half's mean stress"),
             stress_error.abs(),
-            5e-3,
+            2e-3,
         );
         plot.line(format!("moldwarp, {n} elements"), curve);
     }

@@ -2,6 +2,7 @@
 //! particle's element is found anew.
 
 use super::BLOCK;
+use super::state::moved;
 use crate::Vec3;
 use crate::parallel::{ByCell, First, fold};
 use crate::simulation::{Simulation, Stop};
@@ -16,11 +17,7 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
             follower,
             ..
         } = sim;
-        let moved = |node: u32| {
-            let slot = active.slot_of_node[node as usize] as usize;
-            nodes.get(slot).map_or(Vec3::ZERO, |n| n.moved)
-        };
-        if let Some(element) = follower.follow(&mut plan.mesh, moved) {
+        if let Some(element) = follower.follow(&mut plan.mesh, moved(active, nodes)) {
             return Err(sim.turned_over(element));
         }
     }

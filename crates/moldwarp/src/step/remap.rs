@@ -3,6 +3,7 @@
 //! The average v̄_i = Σ m_p v_p N_i / m_i (Sulsky et al. 1995) keeps nodes with little support
 //! harmless; what it takes from short waves is given back (see `correction`).
 
+use super::state::moved;
 use super::{BLOCK, Node, correction};
 use crate::Vec3;
 use crate::measure::DriftWork;
@@ -21,10 +22,7 @@ pub(super) fn run(sim: &mut Simulation, dt: f64) {
         probes,
         ..
     } = sim;
-    let moved = |mesh_node: u32| {
-        let slot = active.slot_of_node[mesh_node as usize] as usize;
-        nodes.get(slot).map_or(Vec3::ZERO, |node| node.moved)
-    };
+    let moved = moved(active, nodes);
     absorbing
         .nodes
         .iter_mut()

@@ -1,6 +1,7 @@
 //! What the step keeps per node and per cell.
 
-use crate::tensor::Voigt;
+use super::Active;
+use crate::tensor::{self, Voigt};
 use crate::{Mat3, Vec3};
 
 /// A node that particles touch. Forces in N, work in J.
@@ -68,6 +69,24 @@ pub struct CellForce {
     pub viscous: Voigt,
     /// Whether the cell counts as filled.
     pub filled: bool,
+}
+
+impl CellForce {
+    /// Half the work on a displacement gradient, for the ledger: [of the particles' stresses
+    /// Σ σ_p V_p, what the cell's stress does beyond that, of the viscous part], J.
+    pub(super) fn half_work(&self, particles: &Voigt, gradient: &Mat3) -> [f64; 3] {
+        let half = |stress: &Voigt| 0.5 * tensor::contract(stress, gradient);
+        let own = half(particles);
+        [own, half(&self.stress) - own, half(&self.viscous)]
+    }
+}
+
+/// Displacements in the last drift by mesh node, m; zero where no particle is near.
+pub(super) fn moved<'a>(active: &'a Active, nodes: &'a [Node]) -> impl Fn(u32) -> Vec3 + 'a {
+    |mesh_node| {
+        let slot = active.slot_of_node[mesh_node as usize] as usize;
+        nodes.get(slot).map_or(Vec3::ZERO, |node| node.moved)
+    }
 }
 
 /// Deformation of a cell in a step.

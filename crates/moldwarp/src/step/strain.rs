@@ -3,9 +3,8 @@
 
 use super::{BLOCK, CellForce, CellStrain, CellSums, Node};
 use crate::mesh::Mesh;
-use crate::parallel::fold;
+use crate::parallel::{Sum, fold};
 use crate::simulation::Simulation;
-use crate::tensor;
 use crate::{Mat3, Vec3};
 use std::ops::Range;
 
@@ -52,10 +51,7 @@ fn gradients(sim: &mut Simulation) {
             strain.midpoint = gradient * (Mat3::IDENTITY + gradient * 0.5).inverse();
             strain.volumetric =
                 strain.midpoint.x_axis.x + strain.midpoint.y_axis.y + strain.midpoint.z_axis.z;
-            let particles = 0.5 * tensor::contract(&sums[c].stress, &gradient);
-            work[0] += particles;
-            work[1] += 0.5 * tensor::contract(&forces[c].stress, &gradient) - particles;
-            work[2] += 0.5 * tensor::contract(&forces[c].viscous, &gradient);
+            work = work.plus(forces[c].half_work(&sums[c].stress, &gradient));
         }
         work
     });

@@ -3,7 +3,7 @@
 use super::correction::PAIRS;
 use super::{BLOCK, CellForce, CellSums, Node};
 use crate::mesh::NONE;
-use crate::parallel::{ByCell, fold};
+use crate::parallel::{ByCell, Sum, fold};
 use crate::plan::Integration;
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt, add_scaled};
@@ -156,10 +156,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 };
                 force.viscous = viscous(&gradient, sum.moduli.map(|m| m * per_step * fuller));
             }
-            let particles = 0.5 * tensor::contract(&sum.stress, &gradient);
-            work[0] += particles;
-            work[1] += 0.5 * tensor::contract(&force.stress, &gradient) - particles;
-            work[2] += 0.5 * tensor::contract(&force.viscous, &gradient);
+            work = work.plus(force.half_work(&sum.stress, &gradient));
         }
         work
     });

@@ -233,12 +233,23 @@ pub enum MassMatrix {
     Lumped,
 }
 
+/// Nodal mixed discretisation of the volumetric strain, against locking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothing {
+    /// Each element has its own volumetric strain.
+    Off,
+    /// Strains are smoothed, forces come from the stresses as they are (Jassim et al. Eq. 15–16).
+    Strain,
+    /// Strains are smoothed, and mean stresses with the transposed operator: forces do the work
+    /// that the material takes up. Not for frictional soil, see `step/smoothing.rs`.
+    Conjugate,
+}
+
 #[derive(Clone, Debug)]
 pub struct Numerics {
     pub integration: Integration,
     pub mass: MassMatrix,
-    /// Nodal mixed discretisation of the volumetric strain.
-    pub smoothing: bool,
+    pub smoothing: Smoothing,
     /// Share of the critical step that is taken.
     pub courant: f64,
     /// Rate at which particle velocities relax to the mesh's, 1/s.
@@ -258,7 +269,7 @@ impl Default for Numerics {
         Numerics {
             integration: Integration::Mixed,
             mass: MassMatrix::Corrected,
-            smoothing: true,
+            smoothing: Smoothing::Strain,
             courant: 0.5,
             pic_rate: 0.0,
             viscosity: 0.0,

@@ -37,6 +37,10 @@ pub(super) enum AmountOr<T> {
     Table(T),
 }
 
+/// `true`, `false` or a word between the two.
+#[derive(Clone, Debug)]
+pub(super) struct Switch(pub String);
+
 /// The values with their places; that of a single one is the whole value's.
 pub(super) fn each<T>(values: &Spanned<OneOrMany<T>>) -> Vec<(Range<usize>, &T)> {
     match values.get_ref() {
@@ -74,6 +78,28 @@ impl<'de> Deserialize<'de> for Amount {
             }
         }
         deserializer.deserialize_any(Numbers)
+    }
+}
+
+impl<'de> Deserialize<'de> for Switch {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Switch, D::Error> {
+        struct Words;
+        impl Visitor<'_> for Words {
+            type Value = Switch;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("true, false or a word")
+            }
+
+            fn visit_bool<E>(self, v: bool) -> Result<Switch, E> {
+                Ok(Switch(v.to_string()))
+            }
+
+            fn visit_str<E>(self, v: &str) -> Result<Switch, E> {
+                Ok(Switch(v.to_owned()))
+            }
+        }
+        deserializer.deserialize_any(Words)
     }
 }
 

@@ -7,7 +7,7 @@ use super::raw::{RawNumerics, RawViscosity};
 use super::values::{
     amount, amount_at, at_most_one, choose, damping, not_negative, placed, positive, span,
 };
-use moldwarp::plan::{Integration, MassMatrix, Numerics};
+use moldwarp::plan::{Integration, MassMatrix, Numerics, Smoothing};
 use std::f64::consts::PI;
 
 /// What is not given is as in [`Numerics::default`].
@@ -31,8 +31,13 @@ pub(super) fn numerics(raw: &RawNumerics) -> Result<Numerics, Fault> {
         ];
         n.mass = choose(placed(word), "mass matrix", &choices, &[])?;
     }
-    if let Some(smoothing) = raw.smoothing {
-        n.smoothing = smoothing;
+    if let Some(word) = &raw.smoothing {
+        let choices = [
+            ("true", Smoothing::Strain),
+            ("false", Smoothing::Off),
+            ("conjugate", Smoothing::Conjugate),
+        ];
+        n.smoothing = choose((word.span(), &word.get_ref().0), "smoothing", &choices, &[])?;
     }
     if let Some(courant) = &raw.courant {
         n.courant = amount("courant", courant, Dimension::Number)?;

@@ -1,6 +1,6 @@
 //! What the user wrote: the scene's keys and shapes, with places, before anything is checked.
 
-use super::amount::{Amount, AmountOr, Named, OneOrMany, RawVector, Spanned};
+use super::amount::{Amount, AmountOr, Named, OneOrMany, RawVector, Spanned, Switch};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
@@ -137,7 +137,7 @@ pub(super) struct RawProbe {
 pub(super) struct RawNumerics {
     pub integration: Option<Text>,
     pub mass: Option<Text>,
-    pub smoothing: Option<bool>,
+    pub smoothing: Option<Spanned<Switch>>,
     pub courant: Option<RawAmount>,
     pub pic_rate: Option<RawAmount>,
     pub viscosity: Option<Spanned<AmountOr<RawViscosity>>>,

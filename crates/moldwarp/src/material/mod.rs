@@ -71,6 +71,16 @@ impl Material {
         }
     }
 
+    /// Whether a particle has opened in tension and not closed again: no bulk stiffness ties its
+    /// volume to that of its neighbours.
+    #[inline]
+    pub fn is_separated(&self, stress: &Voigt, state: &State) -> bool {
+        match self {
+            Material::LinearElastic(_) => false,
+            Material::MohrCoulomb(_) => mohr_coulomb::is_separated(stress, state),
+        }
+    }
+
     /// The elastic part of the model.
     pub fn elasticity(&self) -> &LinearElastic {
         match self {

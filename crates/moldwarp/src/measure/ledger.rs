@@ -190,6 +190,11 @@ impl Ledger {
         self.now.damping += viscous;
     }
 
+    /// Half a drift's work of what smoothing adds to the cells' mean stresses.
+    pub(crate) fn stress_smoothing_work(&mut self, work: f64) {
+        self.now.smoothing += work;
+    }
+
     /// A drift's work in particles: [σ : (Δε̄ − Δε^p) V, what smoothing left out, σ : Δε^p V].
     pub(crate) fn particle_stress_work(&mut self, [elastic, smoothed_out, plastic]: [f64; 3]) {
         self.now.elastic += elastic;

@@ -25,6 +25,7 @@ mod advance;
 mod correction;
 mod nodes;
 mod remap;
+mod smoothing;
 mod state;
 mod strain;
 mod stress;
@@ -210,6 +211,27 @@ mod tests {
         let volume: f64 = sim.particles.volume.iter().sum();
         let bound = -stress[2] * 200.0 * 6e-5 * volume;
         assert!(energies.plastic + energies.elastic < bound);
+    }
+
+    /// Smoothing that is conjugate loses energy only as weights and gradients change within a step,
+    /// in proportion to the strain.
+    #[test]
+    fn conjugate_smoothing_loses_no_energy() {
+        let lost = |smoothing: Smoothing| {
+            let mut sim = cube(2);
+            sim.plan.numerics.smoothing = smoothing;
+            sim.plan.stages[0].until = Until::Steps(100);
+            sim.set_velocity(|x| 0.01 * (x - Vec3::splat(1.5)) * x.y)
+                .unwrap();
+            while !sim.finished() {
+                sim.step().unwrap();
+            }
+            assert!(sim.energies().residual.abs() < 1e-10 * sim.energy_turned_over());
+            sim.energies().smoothing.abs() / sim.energy_turned_over()
+        };
+        assert!(lost(Smoothing::Conjugate) < 2e-4);
+        assert!(lost(Smoothing::Strain) > 4e-3);
+        assert_eq!(lost(Smoothing::Off), 0.0);
     }
 
     /// A thrown, spinning and quivering body: its mass on the nodes is its particles' to 1e-14,

@@ -35,6 +35,8 @@ pub struct Node {
     pub density: f64,
     /// Averaged volumetric strain of the attached cells.
     pub volumetric: f64,
+    /// A quarter of the averaged mean stress of the attached cells, Pa.
+    pub mean_stress: f64,
 }
 
 /// Sums over the particles of a cell.
@@ -54,6 +56,8 @@ pub struct CellSums {
     pub volume: f64,
     /// Σ V_p without what has opened in tension, m³: it judges filling.
     pub solid: f64,
+    /// Σ V_p of particles that are not separated, m³.
+    pub closed: f64,
     /// Σ λ V_p and Σ G V_p, J.
     pub moduli: [f64; 2],
     /// Greatest constrained modulus of its particles, Pa.
@@ -65,6 +69,8 @@ pub struct CellSums {
 pub struct CellForce {
     /// σ̄ V_e if filled, else Σ σ_p V_p, J.
     pub stress: Voigt,
+    /// What smoothing has added to its mean, J.
+    pub smoothed: f64,
     /// The viscous part, J.
     pub viscous: Voigt,
     /// Whether the cell counts as filled.
@@ -73,11 +79,18 @@ pub struct CellForce {
 
 impl CellForce {
     /// Half the work on a displacement gradient, for the ledger: [of the particles' stresses
-    /// Σ σ_p V_p, what the cell's stress does beyond that, of the viscous part], J.
+    /// Σ σ_p V_p, what the cell's stress does beyond that, of the viscous part], J. What smoothing
+    /// has added is left out.
     pub(super) fn half_work(&self, particles: &Voigt, gradient: &Mat3) -> [f64; 3] {
         let half = |stress: &Voigt| 0.5 * tensor::contract(stress, gradient);
         let own = half(particles);
-        [own, half(&self.stress) - own, half(&self.viscous)]
+        let all = half(&self.stress) - self.half_smoothing_work(gradient);
+        [own, all - own, half(&self.viscous)]
+    }
+
+    /// Half the work of what smoothing has added, J.
+    pub(super) fn half_smoothing_work(&self, gradient: &Mat3) -> f64 {
+        0.5 * self.smoothed * (gradient.x_axis.x + gradient.y_axis.y + gradient.z_axis.z)
     }
 }
 

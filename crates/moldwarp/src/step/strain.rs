@@ -1,7 +1,6 @@
-//! Stage 5: strain of each cell, its volumetric part smoothed by nodal mixed discretisation
-//! (Detournay and Dzik 2006; Jassim et al. Eq. 15–16).
+//! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
-use super::{BLOCK, CellForce, CellStrain, CellSums, Node};
+use super::{BLOCK, CellStrain, smoothing};
 use crate::mesh::Mesh;
 use crate::parallel::{Sum, fold};
 use crate::simulation::Simulation;
@@ -10,9 +9,7 @@ use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation) {
     gradients(sim);
-    if sim.plan.numerics.smoothing {
-        average_at_nodes(sim);
-    }
+    smoothing::strains(sim);
 }
 
 /// Σ u_i ⊗ ∇N_i in element `e`.
@@ -43,7 +40,7 @@ fn gradients(sim: &mut Simulation) {
         Range<usize>,
         &mut [CellStrain],
     )| {
-        let mut work = [0.0; 3];
+        let mut work = [0.0; 4];
         for (c, strain) in range.zip(strains) {
             let moved = active.cell_nodes[c].map(|n| nodes[n as usize].moved);
             let gradient = gradient(mesh, active.elements[c] as usize, moved);
@@ -51,48 +48,12 @@ fn gradients(sim: &mut Simulation) {
             strain.midpoint = gradient * (Mat3::IDENTITY + gradient * 0.5).inverse();
             strain.volumetric =
                 strain.midpoint.x_axis.x + strain.midpoint.y_axis.y + strain.midpoint.z_axis.z;
-            work = work.plus(forces[c].half_work(&sums[c].stress, &gradient));
+            let [own, mean, viscous] = forces[c].half_work(&sums[c].stress, &gradient);
+            let smoothed = forces[c].half_smoothing_work(&gradient);
+            work = work.plus([own, mean, viscous, smoothed]);
         }
         work
     });
-    ledger.grid_stress_work(work);
-}
-
-/// Volume with which a cell counts in a node's average: V_e in the bulk, min(Σ V_p, V_e) at free
-/// surfaces.
-#[inline]
-fn weight(force: &CellForce, sum: &CellSums, volume: f64) -> f64 {
-    if force.filled {
-        volume
-    } else {
-        sum.volume.min(volume)
-    }
-}
-
-fn average_at_nodes(sim: &mut Simulation) {
-    let Simulation {
-        plan,
-        active,
-        nodes,
-        cells,
-        ..
-    } = sim;
-    let (mesh, active, cells) = (&plan.mesh, &*active, &*cells);
-    let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (
-        Range<usize>,
-        &mut [Node],
-    )| {
-        for (slot, node) in slots.zip(nodes) {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for &(c, _) in active.attached(slot) {
-                let c = c as usize;
-                let volume = mesh.volumes[active.elements[c] as usize];
-                let weight = weight(&cells.forces[c], &cells.sums[c], volume);
-                sum += cells.strains[c].volumetric * weight;
-                weights += weight;
-            }
-            node.volumetric = if weights > 0.0 { sum / weights } else { 0.0 };
-        }
-    });
+    ledger.grid_stress_work([work[0], work[1], work[2]]);
+    ledger.stress_smoothing_work(work[3]);
 }

@@ -45,7 +45,7 @@ pub(super) fn choose(sim: &Simulation) -> Result<f64, TimeStepError> {
 /// min h_e / c_e over all cells, s: h_e the shortest altitude, c_e the fastest P-wave speed
 /// present. In a filled cell the density is the nodes' (mass over element volume), since a full
 /// element that happens to hold few particles is as stiff as any; elsewhere stiffness and mass
-/// fade together and the particles' own density counts, lowered by what the correction for
+/// fade together and the particles' own density counts (without what has opened in tension), lowered by what the correction for
 /// averaging can stiffen (`correction::stiffening`). Viscosity β lowers the step by
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
 pub(crate) fn critical(sim: &Simulation) -> f64 {
@@ -73,8 +73,8 @@ pub(crate) fn critical(sim: &Simulation) -> f64 {
                     .map(|&n| nodes[n as usize].density)
                     .sum::<f64>()
                     * 0.25
-            } else if sum.volume > 0.0 {
-                sum.mass.iter().sum::<f64>() / (sum.volume * partly)
+            } else if sum.solid > 0.0 {
+                sum.mass.iter().sum::<f64>() / (sum.solid * partly)
             } else {
                 continue;
             };

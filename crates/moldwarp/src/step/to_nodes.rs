@@ -1,7 +1,7 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
 use super::correction::PAIRS;
-use super::{BLOCK, CellForce, CellSums, Node};
+use super::{BLOCK, CellForce, CellSums, Node, smoothing};
 use crate::mesh::NONE;
 use crate::parallel::{ByCell, Sum, fold};
 use crate::plan::Integration;
@@ -17,6 +17,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64) {
     sum_cells(sim);
     sum_nodes(sim);
     cell_forces(sim, before);
+    smoothing::stresses(sim, before);
 }
 
 /// Sums over the particles of each cell.
@@ -55,11 +56,15 @@ fn sum_cells(sim: &mut Simulation) {
                     *pair += n[i] * n[j] * m;
                 }
                 let volume = particles.volume[p];
-                add_scaled(&mut sum.stress, &particles.stress[p], volume);
                 sum.volume += volume;
                 let body = particles.body[p] as usize;
                 let model = &plan.materials[plan.bodies[body].material].model;
-                sum.solid += volume * model.solid_share(&particles.state[p]);
+                let (stress, state) = (&particles.stress[p], &particles.state[p]);
+                add_scaled(&mut sum.stress, stress, volume);
+                sum.solid += volume * model.solid_share(state);
+                if !model.is_separated(stress, state) {
+                    sum.closed += volume;
+                }
                 let [lame, shear, wave] = elasticity[body];
                 sum.moduli[0] += lame * volume;
                 sum.moduli[1] += shear * volume;
@@ -143,6 +148,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             } else {
                 sum.stress
             };
+            force.smoothed = 0.0;
             force.viscous = [0.0; 6];
             if before == 0.0 {
                 continue;

@@ -34,6 +34,12 @@ pub(in super::super) fn solid_share(state: &State) -> f64 {
     }
 }
 
+/// Opened, and not compressed again.
+#[inline]
+pub(in super::super) fn is_separated(stress: &Voigt, state: &State) -> bool {
+    state[2] > 0.0 && crate::tensor::trace(stress) >= 0.0
+}
+
 impl MohrCoulomb {
     /// [`MohrCoulomb::update`] on a particle's state.
     #[inline]
@@ -89,6 +95,7 @@ mod tests {
         assert_eq!(stretched.stress, zero);
         assert!((state[2] - 0.1).abs() < 1e-12);
         assert!((sand.solid_share(&state) - libm::exp(-0.1)).abs() < 1e-12);
+        assert!(sand.is_separated(&stretched.stress, &state));
         let names: Vec<&str> = sand.state_fields().iter().map(|f| f.name).collect();
         assert_eq!(
             names,

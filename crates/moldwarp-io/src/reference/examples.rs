@@ -73,7 +73,7 @@ pub fn uses(scene: &toml::Table) -> Vec<Use> {
 fn walk(table: &toml::Table, name: &str, path: &[String], tables: &[Table], uses: &mut Vec<Use>) {
     let known = tables.iter().find(|t| t.name == name).unwrap();
     for (word, value) in table {
-        let path = [path, &[word.clone()]].concat();
+        let path = below(path, word);
         let key = known.keys.iter().find(|k| k.name == *word);
         let key = key.unwrap_or_else(|| panic!("the reference has no key {}", path.join(".")));
         uses.push(Use {
@@ -90,17 +90,22 @@ fn walk(table: &toml::Table, name: &str, path: &[String], tables: &[Table], uses
         match value {
             Value::Table(entries) if key.named => {
                 for (name, entry) in entries {
-                    enter(entry, &[&path[..], &[name.clone()]].concat());
+                    enter(entry, &below(&path, name));
                 }
             }
             Value::Array(items) => {
                 for (i, item) in items.iter().enumerate() {
-                    enter(item, &[&path[..], &[i.to_string()]].concat());
+                    enter(item, &below(&path, &i.to_string()));
                 }
             }
             value => enter(value, &path),
         }
     }
+}
+
+fn below(path: &[String], step: &str) -> Vec<String> {
+    let steps = path.iter().map(String::as_str).chain([step]);
+    steps.map(str::to_owned).collect()
 }
 
 /// The scene with the table that holds the last key of the path changed.

@@ -79,7 +79,7 @@ fn materials() -> [Material; 2] {
         dilation_angle: 0.0,
         tension_cutoff: None,
     };
-    let soil = MohrCoulomb::new(elastic.clone(), parameters).expect("it has strength");
+    let soil = MohrCoulomb::new(elastic, parameters).expect("it has strength");
     [
         Material::LinearElastic(elastic),
         Material::MohrCoulomb(soil),

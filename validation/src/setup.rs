@@ -1,7 +1,7 @@
 //! Plans that several cases share.
 
 use moldwarp::boundary::Function;
-use moldwarp::material::{LinearElastic, Material};
+use moldwarp::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParameters};
 use moldwarp::mesh::box_mesh;
 use moldwarp::plan::*;
 use moldwarp::{Mesh, Plan, Simulation, Vec3};
@@ -166,4 +166,96 @@ pub fn value(simulation: &Simulation, column: &str) -> f64 {
     let mut values = Vec::new();
     simulation.probe_values(&mut values);
     values[at.unwrap_or_else(|| panic!("no column {column}"))]
+}
+
+/// A box of Kuhn tetrahedra between given coordinates, m. Its surfaces are the box's.
+pub fn graded_box(at: [Vec<f64>; 3]) -> Mesh {
+    let cells = [0, 1, 2].map(|d| at[d].len() - 1);
+    let size = Vec3::from_array(cells.map(|n| n as f64));
+    let unit = box_mesh(size, cells).expect("a box is a good mesh");
+    let place = |x: &Vec3| Vec3::from_array([0, 1, 2].map(|d| at[d][x[d].round() as usize]));
+    rebuilt(&unit, unit.nodes.iter().map(place).collect(), Vec::new())
+}
+
+/// The faces of a plane z = `height` whose nodes all are `wanted`, as a surface of its own.
+pub fn with_surface_at(
+    mesh: &Mesh,
+    name: &str,
+    height: f64,
+    wanted: impl Fn(Vec3) -> bool,
+) -> Mesh {
+    let on = |n: u32| {
+        let x = mesh.nodes[n as usize];
+        (x.z - height).abs() < 1e-9 && wanted(x)
+    };
+    let mut faces: Vec<[u32; 3]> = Vec::new();
+    for tet in &mesh.tets {
+        for local in moldwarp::mesh::FACE_NODES {
+            let mut face = local.map(|i| tet[i]);
+            face.sort_unstable();
+            if face.iter().all(|&n| on(n)) && !faces.contains(&face) {
+                faces.push(face);
+            }
+        }
+    }
+    rebuilt(mesh, mesh.nodes.clone(), vec![(name.to_owned(), faces)])
+}
+
+/// The mesh with other node coordinates and more surfaces.
+fn rebuilt(mesh: &Mesh, nodes: Vec<Vec3>, more: Vec<(String, Vec<[u32; 3]>)>) -> Mesh {
+    let surface = |s: &moldwarp::mesh::Surface| {
+        let faces = s.faces.iter().map(|&f| mesh.face_nodes(f)).collect();
+        (s.name.clone(), faces)
+    };
+    Mesh::new(moldwarp::mesh::RawMesh {
+        nodes,
+        tets: mesh.tets.clone(),
+        volume_groups: mesh
+            .volume_groups
+            .iter()
+            .map(|g| (g.name.clone(), g.elements.clone()))
+            .collect(),
+        surface_groups: mesh.surfaces.iter().map(surface).chain(more).collect(),
+    })
+    .expect("a mesh with moved nodes is as good as before")
+}
+
+/// Coordinates from `start` on: `uniform` cells of width `h`, then cells that grow by `ratio` to
+/// `end` or just beyond.
+pub fn growing(start: f64, h: f64, uniform: usize, ratio: f64, end: f64) -> Vec<f64> {
+    let sign = (end - start).signum();
+    let mut at: Vec<f64> = (0..=uniform).map(|i| start + sign * h * i as f64).collect();
+    let (mut last, mut width) = (at[uniform], h);
+    while (end - last) * sign > 0.5 * width {
+        width *= ratio;
+        last += sign * width;
+        at.push(last);
+    }
+    at
+}
+
+/// Mohr-Coulomb soil. Angles in degrees; no dilation.
+pub fn mohr_coulomb(
+    elastic: (f64, f64),
+    cohesion: f64,
+    friction: f64,
+    tension_cutoff: Option<f64>,
+    density: f64,
+) -> NamedMaterial {
+    let elastic = LinearElastic {
+        young_modulus: elastic.0,
+        poisson_ratio: elastic.1,
+    };
+    let parameters = MohrCoulombParameters {
+        cohesion,
+        friction_angle: friction.to_radians(),
+        dilation_angle: 0.0,
+        tension_cutoff,
+    };
+    let model = MohrCoulomb::new(elastic, parameters).expect("parameters of the case are sound");
+    NamedMaterial {
+        name: "soil".to_owned(),
+        density,
+        model: Material::MohrCoulomb(model),
+    }
 }

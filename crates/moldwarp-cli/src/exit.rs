@@ -2,13 +2,17 @@
 
 use std::process::ExitCode;
 
-/// How a command ended.
+/// How a command ended. The book's page on the output says the same of each, from here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
+    /// Done.
     Done = 0,
-    /// Wrong input or arguments; nothing was written. Also clap's code.
+    // Also clap's code.
+    /// Wrong input or arguments; no output was written.
     Input = 2,
-    /// A guard stopped the run; what was computed until then is kept.
+    /// A guard stopped the run: a particle left the mesh, an element turned over, there is no
+    /// stable step, or the forced one is above it. What was computed is kept, with a last frame
+    /// and row.
     Guard = 3,
     /// Reading or writing failed during the run.
     Files = 4,

@@ -3,6 +3,8 @@
 pub mod check;
 pub mod mesh;
 pub mod output;
+#[cfg(test)]
+mod reference;
 pub mod run;
 pub mod scene;
 pub mod text;

@@ -165,12 +165,17 @@ pub enum Target {
 /// What a probe records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
+    /// Since the start.
     Displacement,
+    /// Of a mid-step.
     Velocity,
+    /// Its rate of change.
     Acceleration,
+    /// At that time.
     Position,
+    /// Cauchy stress, tension positive.
     Stress,
-    /// Force on a surface that carries a boundary, N.
+    /// Force of the boundaries on the material; of surfaces with a boundary only.
     Reaction,
 }
 

@@ -8,11 +8,12 @@ mod oedometer;
 mod rotation;
 mod sensitivity;
 mod shear_wave;
+mod strip_footing;
 
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 8] = [
+pub const ALL: [Case; 9] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -52,6 +53,11 @@ pub const ALL: [Case; 8] = [
         name: "shear-wave",
         title: "A shear wave against a dashpot",
         run: shear_wave::run,
+    },
+    Case {
+        name: "strip-footing",
+        title: "Bearing capacity of a strip footing on clay",
+        run: strip_footing::run,
     },
 ];
 

@@ -9,12 +9,17 @@ use std::path::Path;
 /// What is kept of a run. SI units throughout.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
+    /// A short name, after the scene's folder.
     pub case: String,
+    /// The title of the scene.
     pub title: String,
-    /// `done`, or why the run was stopped.
+    /// `"done"`, or why the run was stopped.
     pub exit: String,
+    /// Number of particles.
     pub particles: usize,
+    /// Number of elements of the mesh.
     pub elements: usize,
+    /// Number of steps done.
     pub steps: u64,
     /// Simulated time, s.
     pub time: f64,
@@ -22,18 +27,26 @@ pub struct Summary {
     pub wall_time: f64,
     /// Particles times steps over the seconds spent in the step loop alone.
     pub particle_steps_per_second: f64,
-    /// Least and greatest step taken, s; null before the first.
+    /// Least step, s; null if there was none.
     pub min_dt: Option<f64>,
+    /// Greatest step, s; null if there was none.
     pub max_dt: Option<f64>,
-    /// At the end, J, by kind.
+    /// The [energies](#energies) at the end, J, by kind.
     #[serde(serialize_with = "in_order")]
     pub energy: Vec<(String, f64)>,
     /// The greatest half sum of the absolute physical terms, J: what to relate the others to.
     pub energy_turned_over: f64,
+    /// The comparisons that the scene asked for and that could be made.
     pub compare: Vec<Compared>,
+    /// Number of threads at work; the results do not depend on them.
     pub threads: usize,
+    /// Version of the program.
     pub version: String,
+    /// Fingerprint of the resolved plan and mesh, without title, output, comparisons and threads;
+    /// it may change with the version.
     pub scene_hash: String,
+    /// Fingerprint of every array of the final state, particles by id: two runs ended the same,
+    /// bit for bit, when it is the same.
     pub state_hash: String,
     /// Each column of the history with its unit.
     #[serde(serialize_with = "in_order")]
@@ -43,8 +56,9 @@ pub struct Summary {
 /// A history against its reference.
 #[derive(Clone, Debug, Serialize)]
 pub struct Compared {
+    /// The column of the history.
     pub column: String,
-    /// As the scene names it.
+    /// The reference's name, without its folder.
     pub file: String,
     /// Greatest difference over the reference's peak; null if it is no number.
     pub relative_difference: f64,

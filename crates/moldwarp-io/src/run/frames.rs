@@ -3,7 +3,9 @@
 use crate::output::pvd::Collection;
 use crate::output::vtu::{self, Array, Data};
 use crate::output::{FileError, Folder};
+use moldwarp::NodeFields;
 use moldwarp::material::StateField;
+use moldwarp::particles::Particles;
 use moldwarp::{Simulation, tensor};
 
 /// Writes frames of the particles and of the mesh into a folder.
@@ -40,33 +42,117 @@ impl Frames {
     }
 }
 
+/// An array of the frames. The book's page on the output is made from these, too.
+pub(crate) struct Field<V> {
+    pub name: &'static str,
+    /// Unit, and sign convention where one is needed.
+    pub label: &'static str,
+    #[cfg_attr(not(test), expect(dead_code, reason = "it is for the book"))]
+    pub meaning: &'static str,
+    pub values: V,
+}
+
+type OfParticles = for<'a> fn(&'a Particles, &'a Derived) -> Data<'a>;
+type OfNodes = for<'a> fn(&'a NodeFields) -> Data<'a>;
+
+/// What is computed from the particles for a frame.
+#[derive(Default)]
+pub(crate) struct Derived {
+    pressure: Vec<f64>,
+    deviatoric: Vec<f64>,
+    density: Vec<f64>,
+}
+
+/// Of the particles, before the state variables of their models.
+pub(crate) const PARTICLE_FIELDS: [Field<OfParticles>; 8] = [
+    Field {
+        name: "id",
+        label: "",
+        meaning: "Number at the start; never changes.",
+        values: |p, _| Data::U32(&p.id),
+    },
+    Field {
+        name: "body",
+        label: "",
+        meaning: "Number of the body, from 0 in the order of the scene.",
+        values: |p, _| Data::U16(&p.body),
+    },
+    Field {
+        name: "velocity",
+        label: "m/s",
+        meaning: "Of the middle of the coming step; at the end of the run of that instant.",
+        values: |p, _| Data::Vectors(&p.velocity),
+    },
+    Field {
+        name: "displacement",
+        label: "m",
+        meaning: "Since the start.",
+        values: |p, _| Data::Vectors(&p.displacement),
+    },
+    Field {
+        name: "stress",
+        label: "Pa, tension positive",
+        meaning: "Cauchy stress σ.",
+        values: |p, _| Data::Tensors(&p.stress),
+    },
+    Field {
+        name: "mean_pressure",
+        label: "Pa, compression positive",
+        meaning: "−tr σ/3.",
+        values: |_, d| Data::F64(&d.pressure),
+    },
+    Field {
+        name: "deviatoric_stress",
+        label: "Pa, sqrt(3/2 s:s)",
+        meaning: "q = √(3/2 s : s), s the deviator of σ.",
+        values: |_, d| Data::F64(&d.deviatoric),
+    },
+    Field {
+        name: "density",
+        label: "kg/m3",
+        meaning: "m_p/V_p.",
+        values: |_, d| Data::F64(&d.density),
+    },
+];
+
+/// Of the mesh's nodes.
+pub(crate) const NODE_FIELDS: [Field<OfNodes>; 3] = [
+    Field {
+        name: "velocity",
+        label: "m/s",
+        meaning: "After the last remap, of the middle of the last step; 0 before the first step \
+                  and where no particle is near.",
+        values: |n| Data::Vectors(&n.velocity),
+    },
+    Field {
+        name: "mass",
+        label: "kg",
+        meaning: "Lumped mass.",
+        values: |n| Data::F64(&n.mass),
+    },
+    Field {
+        name: "reaction",
+        label: "N, on the material",
+        meaning: "Force of all boundaries, absorbing ones included, on the material.",
+        values: |n| Data::Vectors(&n.reaction),
+    },
+];
+
 fn write_particles(sim: &Simulation, path: &std::path::Path) -> Result<(), FileError> {
     let p = sim.particles();
-    let pressure: Vec<f64> = p.stress.iter().map(mean_pressure).collect();
-    let deviatoric: Vec<f64> = p.stress.iter().map(tensor::equivalent).collect();
-    let density: Vec<f64> = p.mass.iter().zip(&p.volume).map(|(m, v)| m / v).collect();
+    let derived = Derived {
+        pressure: p.stress.iter().map(mean_pressure).collect(),
+        deviatoric: p.stress.iter().map(tensor::equivalent).collect(),
+        density: p.mass.iter().zip(&p.volume).map(|(m, v)| m / v).collect(),
+    };
     let states = state_fields(sim);
-    let mut fields = vec![
-        Array::new("id", Data::U32(&p.id), ""),
-        Array::new("body", Data::U16(&p.body), ""),
-        Array::new("velocity", Data::Vectors(&p.velocity), "m/s"),
-        Array::new("displacement", Data::Vectors(&p.displacement), "m"),
-        Array::new("stress", Data::Tensors(&p.stress), "Pa, tension positive"),
-        Array::new(
-            "mean_pressure",
-            Data::F64(&pressure),
-            "Pa, compression positive",
-        ),
-        Array::new(
-            "deviatoric_stress",
-            Data::F64(&deviatoric),
-            "Pa, sqrt(3/2 s:s)",
-        ),
-        Array::new("density", Data::F64(&density), "kg/m3"),
-    ];
-    for (field, values) in &states {
-        fields.push(Array::new(field.name, Data::F64(values), field.unit));
-    }
+    let own = PARTICLE_FIELDS
+        .iter()
+        .map(|f| Array::new(f.name, (f.values)(p, &derived), f.label));
+    let of_models = states
+        .iter()
+        .map(|(field, values)| Array::new(field.name, Data::F64(values), field.unit));
+    let fields: Vec<Array> = own.chain(of_models).collect();
     vtu::write_points(path, sim.time(), &p.position, &fields)
 }
 
@@ -98,15 +184,7 @@ fn state_fields(sim: &Simulation) -> Vec<(StateField, Vec<f64>)> {
 
 fn write_mesh(sim: &Simulation, path: &std::path::Path) -> Result<(), FileError> {
     let nodes = sim.node_fields();
-    let fields = [
-        Array::new("velocity", Data::Vectors(&nodes.velocity), "m/s"),
-        Array::new("mass", Data::F64(&nodes.mass), "kg"),
-        Array::new(
-            "reaction",
-            Data::Vectors(&nodes.reaction),
-            "N, on the material",
-        ),
-    ];
+    let fields = NODE_FIELDS.map(|f| Array::new(f.name, (f.values)(&nodes), f.label));
     let mesh = sim.mesh();
     vtu::write_mesh(path, sim.time(), &mesh.nodes, &mesh.tets, &fields)
 }

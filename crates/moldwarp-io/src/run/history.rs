@@ -9,18 +9,53 @@ use crate::scene::Compare;
 use moldwarp::Simulation;
 use moldwarp::measure::Energies;
 
-/// Columns that every history begins with, with their units; stages are counted from 0.
-const FIRST: [(&str, &str); 5] = [
-    ("time", "s"),
-    ("stage", ""),
-    ("stage_time", "s"),
-    ("step", ""),
-    ("dt", "s"),
+/// A column that every history has. The book's page on the output is made from these, too.
+pub(crate) struct Column {
+    pub name: &'static str,
+    pub unit: &'static str,
+    #[cfg_attr(not(test), expect(dead_code, reason = "it is for the book"))]
+    pub meaning: &'static str,
+    value: fn(&Simulation) -> f64,
+}
+
+/// Columns that every history begins with.
+pub(crate) const FIRST: [Column; 5] = [
+    Column {
+        name: "time",
+        unit: "s",
+        meaning: "Since the start of the run; never reset.",
+        value: Simulation::time,
+    },
+    Column {
+        name: "stage",
+        unit: "",
+        meaning: "Number of the stage, from 0.",
+        // All stages done: the last row still belongs to the last stage.
+        value: |sim| sim.stage().min(sim.plan().stages.len() - 1) as f64,
+    },
+    Column {
+        name: "stage_time",
+        unit: "s",
+        meaning: "Since the stage began.",
+        value: Simulation::stage_time,
+    },
+    Column {
+        name: "step",
+        unit: "",
+        meaning: "Steps done.",
+        value: |sim| sim.steps() as f64,
+    },
+    Column {
+        name: "dt",
+        unit: "s",
+        meaning: "Last step; 0 in the first row.",
+        value: Simulation::time_step,
+    },
 ];
 
 /// A history's columns with their units, in order.
 pub(crate) fn columns(sim: &Simulation) -> Vec<(String, String)> {
-    let first = FIRST.map(|(name, unit)| (name.to_owned(), unit.to_owned()));
+    let first = FIRST.map(|c| (c.name.to_owned(), c.unit.to_owned()));
     let probes = sim.probe_columns().into_iter();
     let energies = Energies::NAMES.map(|name| (format!("energy.{name}"), "J".to_owned()));
     first
@@ -122,16 +157,8 @@ impl History {
 
     /// Adds the simulation as it is now.
     pub fn write(&mut self, sim: &Simulation) -> Result<(), FileError> {
-        // All stages done: the last row still belongs to the last stage.
-        let stage = sim.stage().min(sim.plan().stages.len() - 1);
         self.row.clear();
-        self.row.extend([
-            sim.time(),
-            stage as f64,
-            sim.stage_time(),
-            sim.steps() as f64,
-            sim.time_step(),
-        ]);
+        self.row.extend(FIRST.iter().map(|c| (c.value)(sim)));
         sim.probe_values(&mut self.row);
         self.row.extend(sim.energies().values());
         for expected in &mut self.expected {

@@ -10,6 +10,10 @@ mod state;
 pub use state::state_hash;
 
 pub(crate) use frames::frame_bytes;
+#[cfg(test)]
+pub(crate) use frames::{Field, NODE_FIELDS, PARTICLE_FIELDS};
+#[cfg(test)]
+pub(crate) use history::FIRST;
 pub(crate) use history::{Expected, columns};
 
 use crate::mesh::describe_quality;

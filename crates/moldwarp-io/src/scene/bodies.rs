@@ -100,11 +100,16 @@ pub(super) fn touches(mesh: &Mesh, element: usize, region: &Region) -> bool {
         || mesh.corners(element).iter().any(|&x| region.contains(x))
 }
 
+/// Kinds of regions; what the reference says of each stands here.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
+    /// Along the axes, between two corners.
     Box,
+    /// Round its `centre`.
     Sphere,
+    /// Between the planes through both ends of its axis.
     Cylinder,
+    /// The side of a plane that its normal points away from.
     HalfSpace,
 }
 

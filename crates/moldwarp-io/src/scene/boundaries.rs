@@ -11,11 +11,17 @@ use super::values::{amount, amount_at, choose, foreign, placed, required, span, 
 use moldwarp::Mesh;
 use moldwarp::plan::{Boundary, BoundaryKind};
 
+/// Kinds of boundaries; what the reference says of each stands here.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
+    /// No motion in the directions that are held.
     Fixed,
+    /// No motion normal to the surface.
     Roller,
+    /// A given velocity, in all directions that are not free.
     Prescribed,
+    /// Waves go out: a dashpot, and a spring if there is a virtual thickness; see
+    /// [absorbing boundaries](../theory/method.md#absorbing-boundaries).
     Absorbing,
 }
 

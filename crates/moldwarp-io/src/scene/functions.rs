@@ -7,11 +7,16 @@ use super::raw::RawFunction;
 use super::values::{amount, choose, count, foreign, placed, positive, required, span};
 use moldwarp::boundary::Function;
 
+/// Kinds of functions; what the reference says of each stands here.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
+    /// 1.
     Constant,
+    /// From 0 at the start to 1 after `duration`, then 1.
     Ramp,
+    /// Straight lines between the points, constant outside.
     Table,
+    /// `count` pulses sin(πt/duration), one each `period`, 0 between.
     HalfSine,
 }
 

@@ -27,9 +27,14 @@ pub(super) fn materials(raw: &Named<RawMaterial>) -> Result<Vec<NamedMaterial>, 
         .collect()
 }
 
+/// What the reference says of each stands here.
 #[derive(Clone, Copy)]
 enum Model {
+    /// Hooke's law in rate form, at large deformations; see
+    /// [the elastic law](../limits.md#the-elastic-law-is-a-rate-law).
     LinearElastic,
+    /// The same until it yields, with a tension cut-off; see
+    /// [what is not there yet](../limits.md#what-is-not-there-yet).
     MohrCoulomb,
 }
 

@@ -32,6 +32,9 @@ mod values;
 pub use error::SceneError;
 pub use output::{Compare, Every, OutputSettings};
 
+#[cfg(test)]
+pub(crate) use {quantity::dimensions, unsupported::later};
+
 use error::Fault;
 use moldwarp::particles::SeedingError;
 use moldwarp::step::TimeStepError;

@@ -109,6 +109,26 @@ impl Dimension {
     }
 }
 
+/// A dimension in the words of the reference.
+#[cfg(test)]
+pub(crate) struct Described {
+    /// Without an article.
+    pub name: &'static str,
+    pub units: &'static str,
+    pub example: &'static str,
+}
+
+/// All dimensions that have units.
+#[cfg(test)]
+pub(crate) fn dimensions() -> impl Iterator<Item = Described> {
+    let with_units = DIMENSIONS.iter().filter(|d| !d.4.is_empty());
+    with_units.map(|d| Described {
+        name: d.1.split_once(' ').map_or(d.1, |article| article.1),
+        units: d.4,
+        example: d.3,
+    })
+}
+
 /// The number in SI units.
 pub(super) fn parse(text: &str, expected: Dimension) -> Result<f64, Unfit> {
     let unfit = |message: String| Unfit {

@@ -1,4 +1,9 @@
 //! What the user wrote: the scene's keys and shapes, with places, before anything is checked.
+//!
+//! The comments of the keys are what the book's page on the scene says of them: the meaning, then
+//! `for:` (the kinds or models that have the key, if not all do), `type:` and `default:` (not where
+//! serde needs the key, `–` where others can stand for it). A key that holds a table of its own has
+//! no comment if its keys are to stand beside it in one list. See `crate::reference`.
 
 use super::amount::{Amount, AmountOr, Named, OneOrMany, RawVector, Spanned, Switch};
 use serde::Deserialize;
@@ -11,26 +16,59 @@ pub(super) type RawAmount = Spanned<Amount>;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawScene {
-    /// Looked at before the rest is read.
+    /// Version of the scene format.
+    /// type: 1
     #[serde(rename = "version")]
     pub _version: IgnoredAny,
+    /// For people.
+    /// type: text
+    /// default: name of the case
     pub title: Option<String>,
+    /// Of all bodies, for the whole run.
+    /// type: acceleration × 3
     pub gravity: RawVector,
+    /// [Mesh](#mesh).
+    /// type: table
     pub mesh: Spanned<RawMesh>,
+    /// [Materials](#materials).
+    /// type: tables
     pub materials: Named<RawMaterial>,
+    /// [Bodies](#bodies), at least one.
+    /// type: tables
     pub bodies: Named<RawBody>,
+    /// [Boundaries](#boundaries).
+    /// type: list of tables
+    /// default: none
     #[serde(default)]
     pub boundaries: Vec<Spanned<RawBoundary>>,
+    /// [Loads](#loads).
+    /// type: list of tables
+    /// default: none
     #[serde(default)]
     pub loads: Vec<Spanned<RawLoad>>,
+    /// [Probes](#probes).
+    /// type: tables
+    /// default: none
     #[serde(default)]
     pub probes: Named<RawProbe>,
+    /// [Numerics](#numerics).
+    /// type: table
+    /// default: all defaults
     #[serde(default)]
     pub numerics: RawNumerics,
+    /// [Stages](#stages), at least one.
+    /// type: list of tables
+    /// default: required
     #[serde(default)]
     pub stages: Vec<Spanned<RawStage>>,
+    /// [Output](#output).
+    /// type: table
+    /// default: all defaults
     #[serde(default)]
     pub output: RawOutput,
+    /// [Compare](#compare).
+    /// type: list of tables
+    /// default: none
     #[serde(default)]
     pub compare: Vec<RawCompare>,
 }
@@ -38,7 +76,13 @@ pub(super) struct RawScene {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawMesh {
+    /// A Gmsh mesh, MSH 2.2 or 4.1, ASCII or binary.
+    /// type: path
+    /// default: –
     pub file: Option<Text>,
+    /// Unit in which the file was drawn; with `file` only.
+    /// type: text: m, cm or mm
+    /// default: m
     pub unit: Option<Text>,
     #[serde(rename = "box")]
     pub cuboid: Option<Spanned<RawBox>>,
@@ -47,119 +91,326 @@ pub(super) struct RawMesh {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawBox {
+    /// A box from the origin.
+    /// type: length × 3; each > 0
     pub size: RawVector,
+    /// Bricks along x, y, z, at most 4,000,000 in all; each becomes six (Kuhn) tetrahedra.
+    /// type: 3 whole numbers ≥ 1
     pub cells: Spanned<Vec<Spanned<i64>>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawMaterial {
+    /// The law of stress and strain.
+    /// type: words of materials::Model
     pub model: Text,
+    /// Young's modulus E.
+    /// type: stress > 0
+    /// default: required
     pub young_modulus: Option<RawAmount>,
+    /// Poisson's ratio ν.
+    /// type: number, −1 < ν < 0.5
+    /// default: required
     pub poisson_ratio: Option<RawAmount>,
+    /// Cohesion c; greater than 0 if φ is 0.
+    /// for: mohr-coulomb
+    /// type: stress ≥ 0
+    /// default: required
     pub cohesion: Option<RawAmount>,
+    /// Angle of friction φ.
+    /// for: mohr-coulomb
+    /// type: angle, 0 ≤ φ < 90°
+    /// default: required
     pub friction_angle: Option<RawAmount>,
+    /// Angle of dilation ψ.
+    /// for: mohr-coulomb
+    /// type: angle, 0 ≤ ψ ≤ φ
+    /// default: 0
     pub dilation_angle: Option<RawAmount>,
+    /// Greatest tension T in any direction.
+    /// for: mohr-coulomb
+    /// type: stress, 0 ≤ T ≤ c cot φ
+    /// default: c cot φ; required for φ = 0
     pub tension_cutoff: Option<RawAmount>,
+    /// Weight by volume at the start; divided by 9.81 m/s², whatever gravity is.
+    /// type: unit weight > 0
+    /// default: –
     pub unit_weight: Option<RawAmount>,
+    /// Mass by volume at the start.
+    /// type: density > 0
+    /// default: –
     pub density: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawBody {
+    /// All elements of a volume of the mesh; no two bodies the same.
+    /// type: name
+    /// default: –
     pub volume: Option<Text>,
+    /// The seeding points of any element that lie in a solid, see [regions](#regions).
+    /// type: table
+    /// default: –
     pub region: Option<Spanned<RawRegion>>,
+    /// A name under `materials`.
+    /// type: name
     pub material: Text,
+    /// Particles to begin with, all with the same share of the element's volume.
+    /// type: 1, 4 or 10
+    /// default: 4
     pub particles_per_element: Option<Spanned<i64>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawRegion {
+    /// Which solid.
+    /// type: words of bodies::Kind
+    /// default: "box"
     pub kind: Option<Text>,
+    /// The corner with the least coordinates.
+    /// for: box
+    /// type: length × 3
+    /// default: required
     pub min: Option<RawVector>,
+    /// The corner with the greatest, each greater than that of `min`.
+    /// for: box
+    /// type: length × 3
+    /// default: required
     pub max: Option<RawVector>,
+    /// One end of the axis.
+    /// for: cylinder
+    /// type: length × 3
+    /// default: required
     pub start: Option<RawVector>,
+    /// Its other end.
+    /// for: cylinder
+    /// type: length × 3
+    /// default: required
     pub end: Option<RawVector>,
+    /// Of the sphere.
+    /// for: sphere
+    /// type: length × 3
+    /// default: required
     pub centre: Option<RawVector>,
+    /// Of the sphere, or of the cylinder round its axis.
+    /// for: sphere, cylinder
+    /// type: length > 0
+    /// default: required
     pub radius: Option<RawAmount>,
+    /// Any point of the plane.
+    /// for: half-space
+    /// type: length × 3
+    /// default: required
     pub point: Option<RawVector>,
+    /// Of any length; points out of the body.
+    /// for: half-space
+    /// type: number × 3; not all 0
+    /// default: required
     pub normal: Option<RawVector>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawBoundary {
+    /// For `--set`; no two the same.
+    /// type: text
+    /// default: surfaces' names joined by `+`
     pub name: Option<Text>,
+    /// Surfaces of the mesh.
+    /// type: name or list of names
     pub surface: Texts,
+    /// See below.
+    /// type: words of boundaries::Kind
     pub kind: Text,
+    /// The directions that are held.
+    /// for: fixed
+    /// type: one or a list of "x", "y", "z"
+    /// default: all three
     pub directions: Option<Texts>,
+    /// Of the surface; `"free"` leaves the direction free; not all three.
+    /// for: prescribed
+    /// type: velocity × 3, or `"free"` per component
+    /// default: required
     pub velocity: Option<RawVector>,
+    /// Factor of the velocity over time, see [functions](#functions-of-time).
+    /// for: prescribed
+    /// type: table
+    /// default: constant
     pub function: Option<Spanned<RawFunction>>,
+    /// The dashpot's α (Eq. 17 of the paper).
+    /// for: absorbing
+    /// type: number > 0, or [normal, shear]
+    /// default: 1
     pub alpha: Option<Spanned<OneOrMany<Amount>>>,
+    /// The spring's δ (Eq. 20).
+    /// for: absorbing
+    /// type: length > 0, or [normal, shear]
+    /// default: none: dashpot alone
     pub virtual_thickness: Option<Spanned<OneOrMany<Amount>>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawLoad {
+    /// For `--set`; no two the same.
+    /// type: text
+    /// default: surfaces' names joined by `+`
     pub name: Option<Text>,
+    /// Surfaces of the mesh; each triangle must touch the body.
+    /// type: name or list of names
     pub surface: Texts,
+    /// Whose particles carry the load.
+    /// type: name
+    /// default: the only body
     pub body: Option<Text>,
+    /// Force per area of the surface at the start.
+    /// type: stress × 3
+    /// default: –
     pub traction: Option<RawVector>,
+    /// Against the body, along the normal at the start; negative pulls.
+    /// type: stress
+    /// default: –
     pub pressure: Option<RawAmount>,
+    /// Of the whole surface, spread evenly over its area.
+    /// type: force × 3
+    /// default: –
     pub force: Option<RawVector>,
+    /// Factor over time, see [functions](#functions-of-time).
+    /// type: table
+    /// default: constant
     pub function: Option<Spanned<RawFunction>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawFunction {
+    /// See below.
+    /// type: words of functions::Kind
     pub kind: Text,
+    /// Of the ramp, or of one pulse.
+    /// for: ramp, half-sine
+    /// type: time > 0
+    /// default: required
     pub duration: Option<RawAmount>,
+    /// From one pulse's begin to the next one's.
+    /// for: half-sine
+    /// type: time ≥ `duration`
+    /// default: required if `count` > 1
     pub period: Option<RawAmount>,
+    /// Number of pulses.
+    /// for: half-sine
+    /// type: whole number ≥ 1
+    /// default: 1
     pub count: Option<Spanned<i64>>,
+    /// At least one; times increasing.
+    /// for: table
+    /// type: list of [time, number]
+    /// default: required
     pub points: Option<Spanned<Vec<RawVector>>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawProbe {
+    /// A surface of the mesh.
+    /// type: name
+    /// default: –
     pub surface: Option<Text>,
+    /// A point: follows the particle nearest to it at the start; inside the mesh's bounding box.
+    /// type: length × 3
+    /// default: –
     pub point: Option<RawVector>,
+    /// A body: mass-weighted mean of its particles.
+    /// type: name
+    /// default: –
     pub body: Option<Text>,
+    /// What is recorded, each once; see below.
+    /// type: one or a list of words of plan::Quantity
     pub quantities: Texts,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawNumerics {
+    /// How the [internal force](../theory/method.md#1-particles-to-nodes) is integrated.
+    /// type: words of plan::Integration
+    /// default: "mixed"
     pub integration: Option<Text>,
+    /// How velocities go between nodes and particles: with the accelerations that particles
+    /// receive and the averages that move the nodes both corrected for what averaging takes from
+    /// short waves, or `"lumped"`, without correction, as in the paper (steps are then longer where
+    /// elements are partly empty). See [the correction for
+    /// averaging](../theory/method.md#the-correction-for-averaging).
+    /// type: words of plan::MassMatrix
+    /// default: "corrected"
     pub mass: Option<Text>,
+    /// [Nodal mixed discretisation](../theory/method.md#5-strain); `"conjugate"`, for comparison,
+    /// smooths mean stresses too.
+    /// type: true, false, `"conjugate"`
+    /// default: true
     pub smoothing: Option<Spanned<Switch>>,
+    /// Share of the critical step.
+    /// type: number, 0 < C ≤ 1
+    /// default: 0.5
     pub courant: Option<RawAmount>,
+    /// Rate at which particle velocities relax to the mesh's.
+    /// type: rate ≥ 0
+    /// default: 0
     pub pic_rate: Option<RawAmount>,
+    /// Stiffness-proportional viscosity: the time β, or the fraction of critical for a mode of
+    /// that period, β = fraction · period/π.
+    /// type: time ≥ 0, or `{ fraction, period }`
+    /// default: 0
     pub viscosity: Option<Spanned<AmountOr<RawViscosity>>>,
+    /// Local (Cundall) damping.
+    /// type: number, 0 ≤ α < 1
+    /// default: 0
     pub damping: Option<RawAmount>,
+    /// Forces a step; refused above the stable one.
+    /// type: time > 0
+    /// default: –
     pub time_step: Option<RawAmount>,
+    /// Upper bound; not together with `time_step`.
+    /// type: time > 0
+    /// default: –
     pub max_time_step: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawViscosity {
+    /// Of critical damping.
+    /// type: number ≥ 0
     pub fraction: RawAmount,
+    /// Of the mode that is damped by this fraction.
+    /// type: time > 0
     pub period: RawAmount,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawStage {
+    /// For `--set` and the log; no two the same.
+    /// type: text
     pub name: Text,
+    /// Its length in time; the last step is cut to end there.
+    /// type: time > 0
+    /// default: –
     pub duration: Option<RawAmount>,
+    /// Its length in steps.
+    /// type: whole number ≥ 1
+    /// default: –
     pub steps: Option<Spanned<i64>>,
+    /// Local damping in this stage.
+    /// type: number, 0 ≤ α < 1
+    /// default: that of `numerics`
     pub damping: Option<RawAmount>,
+    /// Given to the whole body of this name when the stage begins.
+    /// type: velocity × 3
+    /// default: none
     #[serde(default)]
     pub initial_velocity: Named<RawVector>,
 }
@@ -167,15 +418,32 @@ pub(super) struct RawStage {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawOutput {
+    /// Frames for ParaView: n gives n + 1 frames from t = 0 to the end; 0 none at all.
+    /// type: whole number ≥ 0
+    /// default: 50
     pub frames: Option<Spanned<i64>>,
+    /// Time between frames, instead of `frames`.
+    /// type: time > 0
+    /// default: –
     pub frame_interval: Option<RawAmount>,
+    /// Rows of `history.csv`: n gives n + 1 rows.
+    /// type: whole number ≥ 1
+    /// default: 1000
     pub history: Option<Spanned<i64>>,
+    /// Time between rows, instead of `history`.
+    /// type: time > 0
+    /// default: –
     pub history_interval: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawCompare {
+    /// Of the history: `<probe>.<quantity>.<component>` or `energy.<kind>`.
+    /// type: text
     pub column: Text,
+    /// What is expected: CSV with a header row; the first two columns are time (s) and value (SI), times not
+    /// decreasing.
+    /// type: path
     pub file: Text,
 }

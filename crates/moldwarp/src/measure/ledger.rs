@@ -64,11 +64,11 @@ impl Sum for DriftWork {
 pub struct Energies {
     /// ½ Σ m_p v_p² of particles, at the same instant as their positions.
     pub kinetic: f64,
-    /// ½ Σ m_i v_i² of nodes after the last remap, half a step earlier.
+    /// ½ Σ m_i v_i² of nodes after the last remap, half a step earlier; no part of the balance.
     pub kinetic_grid: f64,
     /// Σ σ : (Δε − Δε^p) V, stored in the material.
     pub elastic: f64,
-    /// −Σ m_p g · Δx_p.
+    /// −Σ m_p g · Δx_p, stored in the gravity field.
     pub gravity: f64,
     /// Work of loads.
     pub load: f64,
@@ -88,7 +88,7 @@ pub struct Energies {
     pub integration: f64,
     /// Lost as particles move through the mesh.
     pub advection: f64,
-    /// What is left over.
+    /// What is left over: given less stored, dissipated and lost; round-off.
     pub residual: f64,
 }
 

@@ -2,11 +2,11 @@
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
 use super::{BLOCK, Node};
-use crate::Vec3;
 use crate::measure::DriftWork;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
 use crate::tensor;
+use crate::{Mat3, Vec3};
 use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
@@ -58,7 +58,10 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 })
                 .sum();
             let unbalanced = internal + gravity * node.mass + node.load;
-            node.damping = -damping * unbalanced.abs() * signs(node.velocity);
+            let constraint = constraints.of(mesh_node);
+            // What a constraint holds is balanced and not to be damped.
+            let free = constraint.map_or(Mat3::IDENTITY, |c| c.free);
+            node.damping = free * (-damping * (free * unbalanced).abs() * signs(node.velocity));
             let mut force = unbalanced + node.damping;
             node.absorbing = Vec3::ZERO;
             if let Some(boundary) = absorbing.of(mesh_node) {
@@ -73,7 +76,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 force += node.absorbing;
             }
             node.acceleration = force / node.mass;
-            if let Some(constraint) = constraints.of(mesh_node) {
+            if let Some(constraint) = constraint {
                 let held = constraints.acceleration(constraint, node.velocity, h);
                 node.acceleration = constraint.free * node.acceleration + held;
             }

@@ -218,6 +218,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             title: raw.title.clone().unwrap_or_else(|| case.clone()),
             gravity,
             mesh,
+            symmetry: None,
             materials,
             bodies,
             boundaries,

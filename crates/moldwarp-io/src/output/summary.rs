@@ -6,7 +6,8 @@ use serde::{Serialize, Serializer};
 use std::io::Write;
 use std::path::Path;
 
-/// What is kept of a run. SI units throughout.
+/// What is kept of a run. SI units throughout; mass and energies of a part that is computed are those
+/// of the whole body.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     pub case: String,
@@ -15,6 +16,8 @@ pub struct Summary {
     pub exit: String,
     pub particles: usize,
     pub elements: usize,
+    /// Of all bodies, kg.
+    pub mass: f64,
     pub steps: u64,
     /// Simulated time, s.
     pub time: f64,
@@ -90,6 +93,7 @@ mod tests {
             exit: "done".into(),
             particles: 8,
             elements: 6,
+            mass: 20.5,
             steps: 2,
             time: 0.5,
             wall_time: 1.0,

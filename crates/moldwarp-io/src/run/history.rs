@@ -1,6 +1,6 @@
 //! `history.csv`: the columns of a simulation and its rows.
 
-use super::RunError;
+use super::{RunError, whole};
 use crate::output::compare::{difference, reference_peak};
 use crate::output::csv::{self, Writer};
 use crate::output::summary::Compared;
@@ -132,8 +132,8 @@ impl History {
             sim.steps() as f64,
             sim.time_step(),
         ]);
-        sim.probe_values(&mut self.row);
-        self.row.extend(sim.energies().values());
+        whole::probe_values(sim, &mut self.row);
+        self.row.extend(whole::energies(sim).values());
         for expected in &mut self.expected {
             expected.seen.push((sim.time(), self.row[expected.column]));
         }

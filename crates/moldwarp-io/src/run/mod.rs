@@ -6,11 +6,13 @@ mod log;
 mod recorder;
 mod schedule;
 mod state;
+mod whole;
 
 pub use state::state_hash;
 
 pub(crate) use frames::frame_bytes;
 pub(crate) use history::{Expected, columns};
+pub(crate) use whole::factor as whole_factor;
 
 use crate::mesh::describe_quality;
 use crate::output::csv::CsvError;
@@ -198,7 +200,7 @@ pub fn run(
     Ok(Outcome {
         folder,
         summary,
-        energies: sim.energies(),
+        energies: whole::energies(&sim),
         stopped,
         problems,
     })
@@ -219,13 +221,14 @@ fn computed(sim: &Simulation, pace: &Pace) -> Summary {
     Summary {
         particles: sim.particles().len(),
         elements: sim.mesh().tets.len(),
+        mass: whole::mass(sim),
         steps: sim.steps(),
         time: sim.time(),
         particle_steps_per_second: pace.rate(),
         min_dt: pace.bounds.map(|b| b[0]),
         max_dt: pace.bounds.map(|b| b[1]),
-        energy: names.zip(sim.energies().values()).collect(),
-        energy_turned_over: sim.energy_turned_over(),
+        energy: names.zip(whole::energies(sim).values()).collect(),
+        energy_turned_over: whole::energy_turned_over(sim),
         state_hash: state_hash(sim),
         ..Summary::default()
     }

@@ -17,6 +17,7 @@ pub(super) struct RawScene {
     pub title: Option<String>,
     pub gravity: RawVector,
     pub mesh: Spanned<RawMesh>,
+    pub symmetry: Option<Spanned<RawSymmetry>>,
     pub materials: Named<RawMaterial>,
     pub bodies: Named<RawBody>,
     #[serde(default)]
@@ -42,6 +43,7 @@ pub(super) struct RawMesh {
     pub unit: Option<Text>,
     #[serde(rename = "box")]
     pub cuboid: Option<Spanned<RawBox>>,
+    pub cylinder: Option<Spanned<RawCylinder>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -49,6 +51,30 @@ pub(super) struct RawMesh {
 pub(super) struct RawBox {
     pub size: RawVector,
     pub cells: Spanned<Vec<Spanned<i64>>>,
+}
+
+/// Rows of a profile: radius and height.
+pub(super) type RawProfile = Spanned<Vec<RawVector>>;
+/// Values for directions, the last one perhaps for each segment of a profile.
+pub(super) type RawDirections<T> = Spanned<Vec<Spanned<OneOrMany<T>>>>;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawCylinder {
+    pub profile: RawProfile,
+    pub inner: Option<RawProfile>,
+    pub angle: RawAmount,
+    pub cells: RawDirections<i64>,
+    pub grading: Option<RawDirections<Amount>>,
+    pub split: Option<Text>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawSymmetry {
+    pub kind: Text,
+    pub axis: Text,
+    pub angle: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -71,7 +71,9 @@ pub enum CylinderError {
     OnePoint,
     #[error("the heights of a profile must increase; list its points from the bottom up")]
     Height { point: usize },
-    #[error("an outer radius must be greater than zero; a cone is cut off where it is thin")]
+    #[error(
+        "an outer radius must be greater than zero; cut the tip of a cone off at a small radius"
+    )]
     Radius { point: usize },
     #[error(
         "the inner profile has {inner} points, the outer one {outer}; give each outer point one \

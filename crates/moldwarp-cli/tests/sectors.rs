@@ -46,12 +46,15 @@ quantities = ["reaction", "displacement"]
 surface = "theta-min"
 quantities = "reaction"
 
-[numerics]
-damping = 0.5
-
+# Local damping acts on held nodes, too: reactions are read without it.
 [[stages]]
 name = "rest"
 duration = "0.4 s"
+damping = 0.5
+
+[[stages]]
+name = "stand"
+duration = "0.02 s"
 
 [output]
 frames = 1
@@ -77,7 +80,7 @@ fn mass_and_reactions_are_those_of_the_whole_cylinder() {
     let weight = mass * 9.81 + 2e3;
     let reaction = last("base.reaction.z");
     assert!(
-        (reaction / weight - 1.0).abs() < 1e-3,
+        (reaction / weight - 1.0).abs() < 1e-4,
         "{reaction} {weight}"
     );
     for across in ["base.reaction.x", "plane.reaction.x", "plane.reaction.y"] {

@@ -50,6 +50,7 @@ pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
         title: String::new(),
         gravity: Vec3::ZERO,
         mesh,
+        symmetry: None,
         materials: vec![material],
         bodies: vec![Body {
             name: "body".to_owned(),

@@ -1,7 +1,7 @@
 //! What a run would be, without running it.
 
 use crate::mesh::describe_quality;
-use crate::run::{Expected, RunError, columns, end_time, frame_bytes, simulation};
+use crate::run::{Expected, RunError, columns, end_time, frame_bytes, simulation, whole_factor};
 use crate::scene::{Every, Scene};
 use moldwarp::plan::Until;
 use moldwarp::{Simulation, Stop};
@@ -46,9 +46,9 @@ pub struct BodyForecast {
     pub name: String,
     pub material: String,
     pub particles: usize,
-    /// m³.
+    /// m³; of the whole body if a part of it is computed.
     pub volume: f64,
-    /// kg.
+    /// kg; the same.
     pub mass: f64,
 }
 
@@ -150,12 +150,12 @@ fn bodies(sim: &Simulation, names: Vec<(String, String)>) -> Vec<BodyForecast> {
             mass: 0.0,
         })
         .collect();
-    let p = sim.particles();
+    let (p, whole) = (sim.particles(), whole_factor(sim));
     for (i, &body) in p.body.iter().enumerate() {
         let body = &mut bodies[body as usize];
         body.particles += 1;
-        body.volume += p.volume[i];
-        body.mass += p.mass[i];
+        body.volume += p.volume[i] * whole;
+        body.mass += p.mass[i] * whole;
     }
     bodies
 }

@@ -19,6 +19,7 @@ mod query;
 mod random;
 mod simulation;
 pub mod step;
+pub mod symmetry;
 pub mod tensor;
 
 pub use material::Material;
@@ -27,6 +28,7 @@ pub use particles::Particles;
 pub use plan::Plan;
 pub use query::NodeFields;
 pub use simulation::{SetupError, Simulation, Stop};
+pub use symmetry::Symmetry;
 
 /// A point, a vector: x, y, z.
 pub type Vec3 = glam::DVec3;

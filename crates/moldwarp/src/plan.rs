@@ -4,6 +4,7 @@ use crate::Vec3;
 use crate::boundary::Function;
 use crate::material::Material;
 use crate::mesh::Mesh;
+use crate::symmetry::Symmetry;
 
 /// Everything that decides a simulation's result. Output is not part of it.
 #[derive(Clone, Debug)]
@@ -12,6 +13,8 @@ pub struct Plan {
     /// m/s².
     pub gravity: Vec3,
     pub mesh: Mesh,
+    /// What the mesh is of the whole body, if it is a part of it.
+    pub symmetry: Option<Symmetry>,
     pub materials: Vec<NamedMaterial>,
     pub bodies: Vec<Body>,
     pub boundaries: Vec<Boundary>,
@@ -141,7 +144,8 @@ pub enum LoadKind {
     Traction(Vec3),
     /// Against the body, along the surface's normal at the start, Pa.
     Pressure(f64),
-    /// The whole surface's force, N, spread evenly over its area.
+    /// The whole surface's force, N, spread evenly over its area; with a symmetry that of the whole
+    /// body.
     Force(Vec3),
 }
 

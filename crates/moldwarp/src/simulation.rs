@@ -112,7 +112,8 @@ impl Simulation {
         let mut particles = seed(&plan.mesh, &plan.bodies, &plan.materials)?;
         let mut order = Order::default();
         order.sort(&mut particles, plan.mesh.tets.len());
-        let loads = load_points(&plan.mesh, &plan.loads, &particles, &order.offsets)?;
+        let share = plan.symmetry.map_or(1.0, |s| s.share);
+        let loads = load_points(&plan.mesh, &plan.loads, &particles, &order.offsets, share)?;
         let probes = Probes::new(&plan, &particles, &order.offsets);
         let constraints = Constraints::new(&plan.mesh, &plan.boundaries);
         let absorbing = absorbing(&plan, &particles, &order.offsets);

@@ -66,6 +66,7 @@ pub fn scene_hash(plan: &Plan) -> String {
         title: _,
         gravity,
         mesh,
+        symmetry,
         materials,
         bodies,
         boundaries,
@@ -86,6 +87,7 @@ pub fn scene_hash(plan: &Plan) -> String {
     }
     // Debug prints every f64 so that it reads back the same: no digit is lost.
     h.text("gravity", &format!("{gravity:?}"));
+    h.text("symmetry", &format!("{symmetry:?}"));
     h.text("materials", &format!("{materials:?}"));
     h.text("bodies", &format!("{bodies:?}"));
     h.text("boundaries", &format!("{boundaries:?}"));

@@ -6,7 +6,8 @@ use serde::{Serialize, Serializer};
 use std::io::Write;
 use std::path::Path;
 
-/// What is kept of a run. SI units throughout.
+/// What is kept of a run. SI units throughout; mass and energies of a part that is computed are those
+/// of the whole body.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     /// A short name, after the scene's folder.
@@ -19,6 +20,8 @@ pub struct Summary {
     pub particles: usize,
     /// Number of elements of the mesh.
     pub elements: usize,
+    /// Of all bodies, kg.
+    pub mass: f64,
     /// Number of steps done.
     pub steps: u64,
     /// Simulated time, s.
@@ -104,6 +107,7 @@ mod tests {
             exit: "done".into(),
             particles: 8,
             elements: 6,
+            mass: 20.5,
             steps: 2,
             time: 0.5,
             wall_time: 1.0,

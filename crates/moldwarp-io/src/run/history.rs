@@ -1,6 +1,6 @@
 //! `history.csv`: the columns of a simulation and its rows.
 
-use super::RunError;
+use super::{RunError, whole};
 use crate::output::compare::{difference, reference_peak};
 use crate::output::csv::{self, Writer};
 use crate::output::summary::Compared;
@@ -159,8 +159,8 @@ impl History {
     pub fn write(&mut self, sim: &Simulation) -> Result<(), FileError> {
         self.row.clear();
         self.row.extend(FIRST.iter().map(|c| (c.value)(sim)));
-        sim.probe_values(&mut self.row);
-        self.row.extend(sim.energies().values());
+        whole::probe_values(sim, &mut self.row);
+        self.row.extend(whole::energies(sim).values());
         for expected in &mut self.expected {
             expected.seen.push((sim.time(), self.row[expected.column]));
         }

@@ -6,6 +6,7 @@ mod log;
 mod recorder;
 mod schedule;
 mod state;
+mod whole;
 
 pub use state::state_hash;
 
@@ -15,6 +16,7 @@ pub(crate) use frames::{Field, NODE_FIELDS, PARTICLE_FIELDS};
 #[cfg(test)]
 pub(crate) use history::FIRST;
 pub(crate) use history::{Expected, columns};
+pub(crate) use whole::factor as whole_factor;
 
 use crate::mesh::describe_quality;
 use crate::output::csv::CsvError;
@@ -202,7 +204,7 @@ pub fn run(
     Ok(Outcome {
         folder,
         summary,
-        energies: sim.energies(),
+        energies: whole::energies(&sim),
         stopped,
         problems,
     })
@@ -223,13 +225,14 @@ fn computed(sim: &Simulation, pace: &Pace) -> Summary {
     Summary {
         particles: sim.particles().len(),
         elements: sim.mesh().tets.len(),
+        mass: whole::mass(sim),
         steps: sim.steps(),
         time: sim.time(),
         particle_steps_per_second: pace.rate(),
         min_dt: pace.bounds.map(|b| b[0]),
         max_dt: pace.bounds.map(|b| b[1]),
-        energy: names.zip(sim.energies().values()).collect(),
-        energy_turned_over: sim.energy_turned_over(),
+        energy: names.zip(whole::energies(sim).values()).collect(),
+        energy_turned_over: whole::energy_turned_over(sim),
         state_hash: state_hash(sim),
         ..Summary::default()
     }

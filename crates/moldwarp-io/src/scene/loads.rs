@@ -7,13 +7,15 @@ use super::functions::function;
 use super::quantity::Dimension;
 use super::raw::{RawLoad, Text};
 use super::surfaces::{joined, surfaces, unique};
+use super::symmetry::allowed;
 use super::values::{amount, exactly_one, find, placed, span, vector};
-use moldwarp::Mesh;
 use moldwarp::plan::{Body, Load, LoadKind, Place};
+use moldwarp::{Mesh, Symmetry};
 
 pub(super) fn loads(
     raw: &[Spanned<RawLoad>],
     mesh: &Mesh,
+    symmetry: Option<&Symmetry>,
     bodies: &[Body],
 ) -> Result<Vec<Load>, Fault> {
     let mut loads: Vec<Load> = Vec::new();
@@ -40,7 +42,7 @@ pub(super) fn loads(
             name,
             surfaces,
             body,
-            kind: kind(item)?,
+            kind: kind(item, symmetry)?,
             function: function(raw.function.as_ref())?,
         });
     }
@@ -59,7 +61,7 @@ fn body(item: &Spanned<RawLoad>, bodies: &[Body]) -> Result<usize, Fault> {
     }
 }
 
-fn kind(item: &Spanned<RawLoad>) -> Result<LoadKind, Fault> {
+fn kind(item: &Spanned<RawLoad>, symmetry: Option<&Symmetry>) -> Result<LoadKind, Fault> {
     let raw = item.get_ref();
     exactly_one(
         (raw.surface.span(), "a load"),
@@ -80,7 +82,11 @@ fn kind(item: &Spanned<RawLoad>) -> Result<LoadKind, Fault> {
             p,
             Dimension::Stress,
         )?)),
-        (_, _, Some(f)) => Ok(LoadKind::Force(vector("force", f, Dimension::Force)?)),
+        (_, _, Some(f)) => {
+            let force = vector("force", f, Dimension::Force)?;
+            allowed("force", force, f.span(), symmetry)?;
+            Ok(LoadKind::Force(force))
+        }
         _ => Err(Fault::new("a load needs a size")),
     }
 }

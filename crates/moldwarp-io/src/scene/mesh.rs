@@ -1,6 +1,7 @@
 //! The scene's mesh: from a file or a generator.
 
 use super::amount::Spanned;
+use super::cylinder::cylinder;
 use super::error::Fault;
 use super::quantity::{self, Dimension};
 use super::raw::{RawBox, RawMesh, Text};
@@ -11,7 +12,7 @@ use moldwarp::mesh::box_mesh;
 use std::path::Path;
 
 /// More cells than this are a slip, not a mesh: 24 million elements.
-const MOST_CELLS: u64 = 4_000_000;
+pub(super) const MOST_CELLS: u64 = 4_000_000;
 
 /// The mesh in metres, and the tags of its elements if a file gave them some. What its reader has
 /// to say goes to `notes`.
@@ -24,16 +25,29 @@ pub(super) fn mesh(
     let raw = raw.get_ref();
     exactly_one(
         (place, "the mesh"),
-        &[("file", span(&raw.file)), ("box", span(&raw.cuboid))],
+        &[
+            ("file", span(&raw.file)),
+            ("box", span(&raw.cuboid)),
+            ("cylinder", span(&raw.cylinder)),
+        ],
     )?;
-    match (&raw.file, &raw.cuboid, &raw.unit) {
-        (Some(file), _, unit) => from_file(file, unit.as_ref(), folder, notes),
-        (None, Some(_), Some(unit)) => Err(Fault::new("`unit` is for mesh files")
-            .at(unit.span(), "a generated mesh does not need it")
-            .help("write the unit in the box's size: size = [\"1 m\", \"1 m\", \"20 cm\"]")),
-        (None, Some(cuboid), None) => Ok((generated(cuboid)?, Vec::new())),
-        (None, None, _) => Err(Fault::new("the scene has no mesh")),
+    match (&raw.file, &raw.unit) {
+        (Some(file), unit) => return from_file(file, unit.as_ref(), folder, notes),
+        (None, Some(unit)) => {
+            return Err(Fault::new("`unit` is for mesh files")
+                .at(unit.span(), "a generated mesh does not need it")
+                .help(
+                    "write the unit in each length, as in size = [\"1 m\", \"1 m\", \"20 cm\"]",
+                ));
+        }
+        (None, None) => {}
     }
+    let mesh = match (&raw.cuboid, &raw.cylinder) {
+        (Some(cuboid), _) => generated(cuboid)?,
+        (None, Some(sector)) => cylinder(sector)?,
+        (None, None) => return Err(Fault::new("the scene has no mesh")),
+    };
+    Ok((mesh, Vec::new()))
 }
 
 fn generated(cuboid: &Spanned<RawBox>) -> Result<Mesh, Fault> {
@@ -104,7 +118,7 @@ fn unreadable(error: MeshFileError, file: &Text, path: &Path) -> Fault {
 }
 
 /// Messages on meshes say what is wrong and, after a semicolon, what to do.
-fn damaged(message: &str, place: std::ops::Range<usize>) -> Fault {
+pub(super) fn damaged(message: &str, place: std::ops::Range<usize>) -> Fault {
     match message.split_once("; ") {
         Some((problem, remedy)) => Fault::new(problem).at(place, "this mesh").help(remedy),
         None => Fault::new(message).at(place, "this mesh"),

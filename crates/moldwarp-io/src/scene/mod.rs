@@ -7,6 +7,7 @@
 mod amount;
 mod bodies;
 mod boundaries;
+mod cylinder;
 mod document;
 mod error;
 mod functions;
@@ -22,6 +23,7 @@ mod raw;
 mod stages;
 mod suggest;
 mod surfaces;
+mod symmetry;
 mod syntax;
 #[cfg(test)]
 mod tests;
@@ -198,9 +200,10 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     let output = output::output(&raw.output)?;
     let materials = materials::materials(&raw.materials)?;
     let (mesh, element_tags) = mesh::mesh(&raw.mesh, &folder, &mut notes)?;
+    let symmetry = symmetry::symmetry(raw, &mesh, gravity, &mut notes)?;
     let bodies = bodies::bodies(&raw.bodies, &mesh, &materials)?;
     let boundaries = boundaries::boundaries(&raw.boundaries, &mesh)?;
-    let loads = loads::loads(&raw.loads, &mesh, &bodies)?;
+    let loads = loads::loads(&raw.loads, &mesh, symmetry.as_ref(), &bodies)?;
     let probes = probes::probes(&raw.probes, &mesh, &bodies, &boundaries, &mut notes)?;
     let stages = stages::stages(&raw.stages, &bodies)?;
     let compare = output::compare(&raw.compare, &probes, &folder)?;
@@ -221,6 +224,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             title: raw.title.clone().unwrap_or_else(|| case.clone()),
             gravity,
             mesh,
+            symmetry,
             materials,
             bodies,
             boundaries,

@@ -30,6 +30,10 @@ pub(super) struct RawScene {
     /// [Mesh](#mesh).
     /// type: table
     pub mesh: Spanned<RawMesh>,
+    /// [Symmetry](#symmetry) of which the mesh is a part.
+    /// type: table
+    /// default: none
+    pub symmetry: Option<Spanned<RawSymmetry>>,
     /// [Materials](#materials).
     /// type: tables
     pub materials: Named<RawMaterial>,
@@ -86,6 +90,7 @@ pub(super) struct RawMesh {
     pub unit: Option<Text>,
     #[serde(rename = "box")]
     pub cuboid: Option<Spanned<RawBox>>,
+    pub cylinder: Option<Spanned<RawCylinder>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -97,6 +102,58 @@ pub(super) struct RawBox {
     /// Bricks along x, y, z, at most 4,000,000 in all; each becomes six (Kuhn) tetrahedra.
     /// type: 3 whole numbers ≥ 1
     pub cells: Spanned<Vec<Spanned<i64>>>,
+}
+
+/// Rows of a profile: radius and height.
+pub(super) type RawProfile = Spanned<Vec<RawVector>>;
+/// Values for directions, the last one perhaps for each segment of a profile.
+pub(super) type RawDirections<T> = Spanned<Vec<Spanned<OneOrMany<T>>>>;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawCylinder {
+    /// The outside as points [radius > 0, height] from the bottom up, two or more; straight
+    /// between them.
+    /// type: list of length × 2
+    pub profile: RawProfile,
+    /// The inside, radius ≥ 0, with a point at each height of the profile; all radii positive or
+    /// all 0.
+    /// type: list of length × 2
+    /// default: solid
+    pub inner: Option<RawProfile>,
+    /// Less than 90° for each cell around; whole rings are not offered.
+    /// type: angle, 0 < α ≤ 180°
+    pub angle: RawAmount,
+    /// [radial, around, vertical]; `vertical` is a list with a number for each segment of the
+    /// profile, or one that each has. At most 4,000,000 cells, 1,000,000 if `symmetric`.
+    /// type: 3 whole numbers ≥ 1
+    pub cells: RawDirections<i64>,
+    /// [radial, vertical]: size of the last cell (outermost, uppermost) over the first, in geometric
+    /// progression; `vertical` a list or one number as for `cells`.
+    /// type: number × 2
+    /// default: [1, 1]
+    pub grading: Option<RawDirections<Amount>>,
+    /// How cells become tetrahedra.
+    /// type: `"six"`, `"symmetric"`
+    /// default: "six"
+    pub split: Option<Text>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawSymmetry {
+    /// A sector of a body of revolution, or one of two halves that are mirror images.
+    /// type: `"sector"`, `"half"`
+    pub kind: Text,
+    /// Through the origin: the axis of revolution of a sector, the *normal* of the plane between
+    /// halves.
+    /// type: `"x"`, `"y"`, `"z"`
+    pub axis: Text,
+    /// Of a sector, which needs it, from θ = 0 to α; θ counts about z from x to y, about x from y to
+    /// z, about y from z to x.
+    /// type: angle, 0 < α ≤ 180°
+    /// default: –
+    pub angle: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -135,6 +135,11 @@ fn example(key: &str) -> String {
         "name" => "name = \"loading\"",
         "size" => "size = [\"1 m\", \"1 m\", \"2 m\"]",
         "cells" => "cells = [4, 4, 8]",
+        "profile" => {
+            "profile = [[\"0.5 m\", \"0 m\"], [\"0.5 m\", \"1 m\"]], radius and height from the bottom up"
+        }
+        "angle" => "angle = \"20 deg\"",
+        "axis" => "axis = \"z\"",
         "column" => "column = \"bottom.displacement.z\"",
         "file" => "file = \"exact.csv\"",
         "fraction" | "period" => "viscosity = { fraction = 0.05, period = \"0.5 s\" }",

@@ -1,10 +1,8 @@
 //! What the scene format has a name for but this version cannot compute.
 
 /// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
-const KEYS: [(&str, &str); 11] = [
+const KEYS: [(&str, &str); 9] = [
     ("contacts", "gravity"),
-    ("symmetry", "gravity"),
-    ("cylinder", "box"),
     ("particle_spacing", "particles_per_element"),
     ("until", "duration"),
     ("on", "duration"),

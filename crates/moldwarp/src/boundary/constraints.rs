@@ -7,6 +7,8 @@ use crate::{Mat3, Vec3};
 
 /// Roller faces of a node whose normals differ by less than this count as one smooth surface.
 const SMOOTH_COSINE: f64 = 0.866_025_403_784_438_6; // 30°
+/// Components of a unit normal below this are round-off of the nodes' coordinates.
+const ROUND_OFF: f64 = 1e-12;
 
 /// A direction in which a node's velocity is given.
 #[derive(Clone, Debug)]
@@ -163,15 +165,22 @@ impl Constraints {
         }
         speeds.retain(|&(v, _)| v != 0.0);
         let unit = rest / length;
-        constraint.free -= Mat3::from_cols(unit * unit.x, unit * unit.y, unit * unit.z);
         constraint.held.push(Held {
             direction: unit,
             speed: speeds,
         });
-        if constraint.held.len() == 3 {
-            constraint.free = Mat3::ZERO;
-        }
+        // From the held directions alone, not by subtraction: what is held is held exactly.
+        constraint.free = match constraint.held[..] {
+            [_] => Mat3::IDENTITY - outer(unit),
+            [ref first, _] => outer(first.direction.cross(unit).normalize()),
+            _ => Mat3::ZERO,
+        };
     }
+}
+
+/// n nᵀ.
+fn outer(n: Vec3) -> Mat3 {
+    Mat3::from_cols(n * n.x, n * n.y, n * n.z)
 }
 
 /// The nodes of surfaces, ascending.
@@ -185,37 +194,55 @@ pub fn surface_nodes(mesh: &Mesh, surfaces: &[usize]) -> Vec<u32> {
 
 /// For each node on a roller, the unit normals to hold: faces whose normals differ by less than
 /// 30° are one smooth surface with their area-weighted mean normal.
+///
+/// Normals of the mesh's outside count with their sign: the two sides of a thin wedge, whose normals
+/// are nearly opposite, are two surfaces, and their common edge moves along itself only. Faces
+/// inside the mesh are listed from either side, so that their normals have no sign.
 fn roller_normals(mesh: &Mesh, boundaries: &[Boundary]) -> Vec<(u32, Vec<Vec3>)> {
     let rollers = boundaries
         .iter()
         .filter(|b| matches!(b.kind, BoundaryKind::Roller));
-    let mut areas: Vec<(u32, Vec3)> = rollers
+    // Node, whether the face is inside the mesh, area.
+    let mut areas: Vec<(u32, bool, Vec3)> = rollers
         .flat_map(|b| &b.surfaces)
         .flat_map(|&s| &mesh.surfaces[s].faces)
-        .flat_map(|&f| mesh.face_nodes(f).map(|n| (n, mesh.face_area(f))))
+        .flat_map(|&f| {
+            let (inside, area) = (mesh.across(f).is_some(), mesh.face_area(f));
+            mesh.face_nodes(f).map(|n| (n, inside, area))
+        })
         .collect();
-    areas.sort_by_key(|a| a.0);
+    areas.sort_by_key(|a| (a.0, a.1));
     areas
         .chunk_by(|a, b| a.0 == b.0)
         .map(|faces| {
             let mut sums: Vec<Vec3> = Vec::new();
-            for &(_, area) in faces {
-                let alike =
-                    |sum: &&mut Vec3| sum.normalize().dot(area.normalize()).abs() > SMOOTH_COSINE;
+            for &(_, inside, area) in faces {
+                let sign = |sum: Vec3| if inside { sum.dot(area).signum() } else { 1.0 };
+                let alike = |sum: &&mut Vec3| {
+                    let cosine = sum.normalize().dot(area.normalize());
+                    sign(**sum) * cosine > SMOOTH_COSINE
+                };
                 match sums.iter_mut().find(alike) {
-                    Some(sum) => *sum += area * sum.dot(area).signum(),
+                    Some(sum) => *sum += area * sign(*sum),
                     None => sums.push(area),
                 }
             }
-            (faces[0].0, sums.iter().map(|s| s.normalize()).collect())
+            (faces[0].0, sums.into_iter().map(unit).collect())
         })
         .collect()
+}
+
+/// The direction of a sum of areas. A component that is round-off is none, so that a wall along an
+/// axis lets nothing through.
+fn unit(area: Vec3) -> Vec3 {
+    let n = area.normalize();
+    Vec3::select(n.abs().cmplt(Vec3::splat(ROUND_OFF)), Vec3::ZERO, n)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::box_mesh;
+    use crate::mesh::{CylinderSector, Split, box_mesh};
 
     fn boundary(mesh: &Mesh, names: &[&str], kind: BoundaryKind) -> Boundary {
         let surfaces = names.iter().map(|n| mesh.surface(n).unwrap()).collect();
@@ -269,5 +296,85 @@ mod tests {
         let edge = constraints.of(node).unwrap();
         assert_eq!(constraints.prescribed(edge), Vec3::new(0.0, 0.0, -0.5));
         assert_eq!(edge.free * Vec3::ONE, Vec3::Y);
+    }
+
+    fn sector(degrees: f64) -> Mesh {
+        let sector = CylinderSector {
+            outer: vec![[2.0, 0.0], [2.0, 1.0]],
+            inner: None,
+            angle: degrees.to_radians(),
+            radial: 2,
+            around: 2,
+            vertical: vec![2],
+            radial_grading: 1.0,
+            vertical_grading: vec![1.0],
+            split: Split::Symmetric,
+        };
+        sector.mesh().unwrap()
+    }
+
+    /// However thin a sector is, its axis moves along itself only, exactly; its planes are held along
+    /// their normals, whatever the order of the rollers.
+    #[test]
+    fn the_axis_of_a_sector_is_free_along_itself_only() {
+        for degrees in [10.0, 20.0, 90.0] {
+            let mesh = sector(degrees);
+            for names in [["theta-min", "theta-max"], ["theta-max", "theta-min"]] {
+                let rollers = boundary(&mesh, &names, BoundaryKind::Roller);
+                let constraints = Constraints::new(&mesh, &[rollers]);
+                let (sin, cos) = degrees.to_radians().sin_cos();
+                for (node, x) in mesh.nodes.iter().enumerate() {
+                    let free = constraints.of(node as u32).map(|c| c.free * Vec3::ONE);
+                    if x.x == 0.0 && x.y == 0.0 {
+                        assert_eq!(free, Some(Vec3::Z), "{degrees} {x}");
+                    } else if x.y == 0.0 {
+                        assert_eq!(free, Some(Vec3::new(1.0, 0.0, 1.0)), "{degrees} {x}");
+                    } else if (x.x * sin - x.y * cos).abs() < 1e-9 {
+                        let along = Vec3::new(cos, sin, 0.0);
+                        let expected = along * (cos + sin) + Vec3::Z;
+                        assert!((free.unwrap() - expected).length() < 1e-12);
+                    } else {
+                        assert_eq!(free, None);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The rim of a thin sector with a roller outside, too, is held in all but its height.
+    #[test]
+    fn the_rim_of_a_sector_moves_up_and_down_only() {
+        let mesh = sector(20.0);
+        let names = ["theta-min", "theta-max", "r-max"];
+        let rollers = boundary(&mesh, &names, BoundaryKind::Roller);
+        let constraints = Constraints::new(&mesh, &[rollers]);
+        for (node, x) in mesh.nodes.iter().enumerate() {
+            let plane = x.y == 0.0 || (x.y - x.x * 20f64.to_radians().tan()).abs() < 1e-9;
+            if plane && x.truncate().length() > 1.999 {
+                let free = constraints.of(node as u32).unwrap().free;
+                assert!((free * Vec3::ONE - Vec3::Z).length() < 1e-12, "{x}");
+            }
+        }
+    }
+
+    /// Faces inside the mesh may be listed from either side, here from both: one surface all the same.
+    #[test]
+    fn faces_inside_have_no_sign() {
+        let mut mesh = box_mesh(Vec3::ONE, [2, 2, 2]).unwrap();
+        let middle = |n: &u32| mesh.nodes[*n as usize].x == 0.5;
+        let mut faces = Vec::new();
+        for element in 0..mesh.tets.len() as u32 {
+            for local in 0..4 {
+                let face = crate::mesh::Face { element, local };
+                if mesh.face_nodes(face).iter().all(middle) && mesh.across(face).is_some() {
+                    faces.push(face);
+                }
+            }
+        }
+        mesh.surfaces[0].faces = faces;
+        let wall = boundary(&mesh, &["x-min"], BoundaryKind::Roller);
+        let constraints = Constraints::new(&mesh, &[wall]);
+        assert_eq!(constraints.all.len(), 9);
+        assert!(constraints.all.iter().all(|c| c.held.len() == 1));
     }
 }

@@ -39,12 +39,14 @@ pub struct LoadError {
     pub total: usize,
 }
 
-/// The points of all loads. `offsets` are the first particles of the elements.
+/// The points of all loads. `offsets` are the first particles of the elements; `share` is the part of
+/// the whole body that the mesh is, by which forces of the whole body are cut down.
 pub fn load_points(
     mesh: &Mesh,
     loads: &[Load],
     particles: &Particles,
     offsets: &[u32],
+    share: f64,
 ) -> Result<Vec<LoadPoint>, LoadError> {
     let mut points = Vec::new();
     for (number, load) in loads.iter().enumerate() {
@@ -64,7 +66,7 @@ pub fn load_points(
             let force = match load.kind {
                 LoadKind::Traction(t) => t * area.length(),
                 LoadKind::Pressure(p) => -area * p,
-                LoadKind::Force(f) => f * (area.length() / total),
+                LoadKind::Force(f) => f * (share * area.length() / total),
             } / 3.0;
             let corners = mesh.face_nodes(side).map(|n| mesh.nodes[n as usize]);
             for weights in POINTS {

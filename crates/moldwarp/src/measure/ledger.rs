@@ -130,6 +130,26 @@ impl Energies {
         ]
     }
 
+    /// All energies times a factor.
+    pub fn times(self, factor: f64) -> Energies {
+        Energies {
+            kinetic: self.kinetic * factor,
+            kinetic_grid: self.kinetic_grid * factor,
+            elastic: self.elastic * factor,
+            gravity: self.gravity * factor,
+            load: self.load * factor,
+            prescribed: self.prescribed * factor,
+            plastic: self.plastic * factor,
+            damping: self.damping * factor,
+            absorbed: self.absorbed * factor,
+            transfer: self.transfer * factor,
+            smoothing: self.smoothing * factor,
+            integration: self.integration * factor,
+            advection: self.advection * factor,
+            residual: self.residual * factor,
+        }
+    }
+
     /// Sum of the absolute numerical terms, J: how good the run is.
     pub fn numerical(&self) -> f64 {
         self.transfer.abs() + self.smoothing.abs() + self.integration.abs() + self.advection.abs()

@@ -4,7 +4,7 @@ use super::{Mesh, MeshError, RawMesh};
 use crate::Vec3;
 
 /// The three axes in each of their six orders: one Kuhn tetrahedron of a cube each.
-const ORDERS: [[usize; 3]; 6] = [
+pub(super) const KUHN_ORDERS: [[usize; 3]; 6] = [
     [0, 1, 2],
     [0, 2, 1],
     [1, 0, 2],
@@ -33,7 +33,7 @@ pub fn box_mesh(size: Vec3, cells: [usize; 3]) -> Result<Mesh, MeshError> {
     for k in 0..cells[2] {
         for j in 0..cells[1] {
             for i in 0..cells[0] {
-                for order in ORDERS {
+                for order in KUHN_ORDERS {
                     let mut corner = [i, j, k];
                     let mut tet = [id(corner); 4];
                     for (q, &axis) in order.iter().enumerate() {

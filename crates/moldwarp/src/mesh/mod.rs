@@ -4,6 +4,7 @@
 //! The shape functions are the barycentric coordinates N₀…N₃; their gradients are constant in
 //! the element. Local face `f` is the one opposite node `f`, where N_f = 0.
 
+mod cylinder;
 mod generate;
 mod geometry;
 mod locate;
@@ -11,12 +12,14 @@ mod motion;
 mod quality;
 mod topology;
 
+pub use cylinder::{CylinderError, CylinderSector, Split};
 pub use generate::box_mesh;
 pub use geometry::{barycentric, tetrahedron_gradients};
 pub use motion::Follower;
 pub use quality::Quality;
 
 use crate::Vec3;
+use generate::KUHN_ORDERS;
 
 /// No element, no node, no neighbour.
 pub const NONE: u32 = u32::MAX;

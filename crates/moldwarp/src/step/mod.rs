@@ -97,6 +97,7 @@ mod tests {
             title: String::new(),
             gravity: Vec3::ZERO,
             mesh,
+            symmetry: None,
             materials: vec![NamedMaterial {
                 name: "soil".into(),
                 density: 1800.0,

@@ -1,7 +1,9 @@
 //! Stage 4: nodal velocities of the updated particles, and Δu_i = Δt v_i (Jassim et al. Eq. 9).
 //!
 //! The average v̄_i = Σ m_p v_p N_i / m_i (Sulsky et al. 1995) keeps nodes with little support
-//! harmless; what it takes from short waves is given back (see `correction`).
+//! harmless; what it takes from short waves is given back (see `correction`). Held nodes exchange the
+//! velocity that they have, as they do in stage 3 with accelerations, so that a roller on a plane of
+//! symmetry is a mirror.
 
 use super::state::moved;
 use super::{BLOCK, Node, correction};
@@ -30,15 +32,16 @@ pub(super) fn run(sim: &mut Simulation, dt: f64) {
     probes.add_drift(moved);
 }
 
-/// v̄_i.
+/// v̄_i, with constraints applied.
 fn average(sim: &mut Simulation) {
     let Simulation {
         active,
         nodes,
         cells,
+        constraints,
         ..
     } = sim;
-    let (active, sums) = (&*active, &cells.sums[..]);
+    let (active, sums, constraints) = (&*active, &cells.sums[..], &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
@@ -54,6 +57,9 @@ fn average(sim: &mut Simulation) {
             } else {
                 Vec3::ZERO
             };
+            if let Some(constraint) = constraints.of(active.nodes[slot]) {
+                node.average = constraint.free * node.average + constraints.prescribed(constraint);
+            }
         }
     });
 }

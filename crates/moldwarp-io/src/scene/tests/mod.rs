@@ -2,6 +2,7 @@
 
 mod messages;
 mod plans;
+mod sectors;
 
 use super::{Scene, SceneError, load};
 use miette::{GraphicalReportHandler, GraphicalTheme};

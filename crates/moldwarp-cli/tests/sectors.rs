@@ -46,7 +46,7 @@ quantities = ["reaction", "displacement"]
 surface = "theta-min"
 quantities = "reaction"
 
-# Local damping acts on held nodes, too: reactions are read without it.
+# Reactions are read at rest, without damping.
 [[stages]]
 name = "rest"
 duration = "0.4 s"

@@ -29,4 +29,5 @@ coarse! {
     mass_matrix = "mass-matrix",
     rotation = "rotation",
     shear_wave = "shear-wave",
+    strip_footing = "strip-footing",
 }

@@ -174,8 +174,9 @@ pub fn graded_box(at: [Vec<f64>; 3]) -> Mesh {
     let cells = [0, 1, 2].map(|d| at[d].len() - 1);
     let size = Vec3::from_array(cells.map(|n| n as f64));
     let unit = box_mesh(size, cells).expect("a box is a good mesh");
-    let place = |x: &Vec3| Vec3::from_array([0, 1, 2].map(|d| at[d][x[d].round() as usize]));
-    rebuilt(&unit, unit.nodes.iter().map(place).collect(), Vec::new())
+    moved(&unit, |x| {
+        Vec3::from_array([0, 1, 2].map(|d| at[d][x[d].round() as usize]))
+    })
 }
 
 /// The faces of a plane z = `height` whose nodes all are `wanted`, as a surface of its own.
@@ -200,6 +201,15 @@ pub fn with_surface_at(
         }
     }
     rebuilt(mesh, mesh.nodes.clone(), vec![(name.to_owned(), faces)])
+}
+
+/// The mesh with its nodes moved.
+pub fn moved(mesh: &Mesh, place: impl Fn(Vec3) -> Vec3) -> Mesh {
+    rebuilt(
+        mesh,
+        mesh.nodes.iter().map(|&x| place(x)).collect(),
+        Vec::new(),
+    )
 }
 
 /// The mesh with other node coordinates and more surfaces.

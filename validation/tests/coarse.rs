@@ -30,4 +30,5 @@ coarse! {
     rotation = "rotation",
     shear_wave = "shear-wave",
     strip_footing = "strip-footing",
+    circular_footing = "circular-footing",
 }

@@ -2,18 +2,18 @@
 
 mod absorbing_column;
 mod first_mode;
+mod footings;
 mod gravity_column;
 mod mass_matrix;
 mod oedometer;
 mod rotation;
 mod sensitivity;
 mod shear_wave;
-mod strip_footing;
 
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 9] = [
+pub const ALL: [Case; 10] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -57,7 +57,12 @@ pub const ALL: [Case; 9] = [
     Case {
         name: "strip-footing",
         title: "Bearing capacity of a strip footing on clay",
-        run: strip_footing::run,
+        run: footings::run_strip,
+    },
+    Case {
+        name: "circular-footing",
+        title: "Bearing capacity of a circular footing on clay",
+        run: footings::run_circle,
     },
 ];
 

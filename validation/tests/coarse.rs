@@ -31,4 +31,5 @@ coarse! {
     shear_wave = "shear-wave",
     strip_footing = "strip-footing",
     circular_footing = "circular-footing",
+    column_collapse = "column-collapse",
 }

@@ -1,6 +1,7 @@
 //! The cases, one file each.
 
 mod absorbing_column;
+mod column_collapse;
 mod first_mode;
 mod footings;
 mod gravity_column;
@@ -13,7 +14,7 @@ mod shear_wave;
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 10] = [
+pub const ALL: [Case; 11] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -63,6 +64,11 @@ pub const ALL: [Case; 10] = [
         name: "circular-footing",
         title: "Bearing capacity of a circular footing on clay",
         run: footings::run_circle,
+    },
+    Case {
+        name: "column-collapse",
+        title: "A cylinder of dry sand collapses",
+        run: column_collapse::run,
     },
 ];
 

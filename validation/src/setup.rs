@@ -61,13 +61,9 @@ pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
         boundaries: Vec::new(),
         loads: Vec::new(),
         probes: Vec::new(),
+        initial_stress: None,
         numerics: Numerics::default(),
-        stages: vec![Stage {
-            name: "run".to_owned(),
-            until: Until::Duration(end),
-            damping: None,
-            initial_velocities: Vec::new(),
-        }],
+        stages: vec![Stage::new("run", Until::Duration(end))],
     }
 }
 

@@ -18,7 +18,9 @@ mod query;
 #[cfg(test)]
 mod random;
 mod simulation;
+mod stages;
 pub mod step;
+mod switches;
 pub mod symmetry;
 pub mod tensor;
 

@@ -1,12 +1,16 @@
 //! A plan being computed.
 
-use crate::boundary::{Absorbing, Constraints, LoadError, LoadPoint, load_points};
-use crate::measure::{Ledger, Probes};
-use crate::mesh::{Face, Follower};
-use crate::particles::{Order, Particles, SeedingError, seed};
-use crate::plan::{BoundaryKind, Plan, Quantity, Target, Until};
+use crate::Vec3;
+use crate::boundary::{
+    Absorbing, Constraints, LoadError, LoadPoint, Surroundings, load_points, surface_nodes,
+};
+use crate::measure::{Ledger, Probes, Scale, Watch};
+use crate::mesh::Follower;
+use crate::particles::initial_stress::{self, Ground};
+use crate::particles::{InitialStressError, Order, Particles, SeedingError, seed};
+use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::step::{Active, CellForce, CellStrain, CellSums, Node, TimeStepError};
-use crate::{Mat3, Vec3};
+use crate::switches::Switches;
 
 /// Why a plan cannot be computed.
 #[derive(Debug, thiserror::Error, PartialEq)]
@@ -19,6 +23,10 @@ pub enum SetupError {
     TimeStep(#[from] TimeStepError),
     #[error("probe `{probe}` asks for a reaction, but is no surface that carries a boundary")]
     NoReaction { probe: String },
+    #[error(transparent)]
+    InitialStress(#[from] InitialStressError),
+    #[error("load `{load}` asks for the initial stress of body `{body}`, which has none")]
+    NoInitialStress { load: String, body: String },
     #[error("there is no stage")]
     NoStage,
 }
@@ -47,6 +55,19 @@ pub enum Stop {
         stage: String,
         time: f64,
     },
+    #[error(
+        "stage `{stage}` reached its limit without equilibrium, {time:e} s after the start: the \
+         out-of-balance ratio is {unbalanced:.2e} (at most {least_unbalanced:e}), the grid's kinetic \
+         energy {kinetic:.2e} of its reference (at most {least_kinetic:e})"
+    )]
+    NotAtRest {
+        unbalanced: f64,
+        least_unbalanced: f64,
+        kinetic: f64,
+        least_kinetic: f64,
+        stage: String,
+        time: f64,
+    },
     #[error("stage `{stage}`, {time:e} s after the start: {error}")]
     TimeStep {
         error: TimeStepError,
@@ -67,8 +88,9 @@ pub(crate) struct Clock {
     pub dt: f64,
     /// Coming step, s.
     pub next: f64,
-    /// Whether bodies were given velocities when the stage began.
-    pub given_velocities: bool,
+    /// Whether bodies were given velocities, or boundaries switched, when the stage began: what
+    /// moves in held directions has to stop.
+    pub new_constraints: bool,
 }
 
 /// What the step keeps per cell.
@@ -97,6 +119,11 @@ pub struct Simulation {
     pub(crate) ledger: Ledger,
     pub(crate) probes: Probes,
     pub(crate) clock: Clock,
+    /// Gravity now, m/s².
+    pub(crate) gravity: Vec3,
+    pub(crate) switches: Switches,
+    pub(crate) watch: Watch,
+    pub(crate) scale: Scale,
     /// Nodes before the last renumbering and their mesh nodes, kept so that no step allocates.
     spare_nodes: Vec<Node>,
     spare_numbers: Vec<u32>,
@@ -112,12 +139,8 @@ impl Simulation {
         let mut particles = seed(&plan.mesh, &plan.bodies, &plan.materials)?;
         let mut order = Order::default();
         order.sort(&mut particles, plan.mesh.tets.len());
-        let share = plan.symmetry.map_or(1.0, |s| s.share);
-        let loads = load_points(&plan.mesh, &plan.loads, &particles, &order.offsets, share)?;
+        let loads = ground(&plan, &mut particles, &order.offsets)?;
         let probes = Probes::new(&plan, &particles, &order.offsets);
-        let constraints = Constraints::new(&plan.mesh, &plan.boundaries);
-        let absorbing = absorbing(&plan, &particles, &order.offsets);
-        let follower = follower(&plan, &constraints);
         let elasticity = plan
             .bodies
             .iter()
@@ -131,27 +154,32 @@ impl Simulation {
             })
             .collect();
         let mut simulation = Simulation {
+            gravity: plan.gravity,
+            switches: Switches::new(&plan),
             plan,
             particles,
             order,
             active: Active::default(),
             nodes: Vec::new(),
             cells: Cells::default(),
-            constraints,
-            absorbing,
-            follower,
+            constraints: Constraints::default(),
+            absorbing: Absorbing::default(),
+            follower: Follower::default(),
             loads,
             elasticity,
             ledger: Ledger::default(),
             probes,
             clock: Clock::default(),
+            watch: Watch::default(),
+            scale: Scale::default(),
             spare_nodes: Vec::new(),
             spare_numbers: Vec::new(),
         };
+        simulation.scale = Scale::new(&simulation);
         simulation.activate();
         simulation.begin_stage().map_err(|stop| match stop {
             Stop::TimeStep { error, .. } => SetupError::TimeStep(error),
-            Stop::LeftTheMesh { .. } | Stop::TurnedOver { .. } => {
+            Stop::LeftTheMesh { .. } | Stop::TurnedOver { .. } | Stop::NotAtRest { .. } => {
                 unreachable!("nothing has moved yet")
             }
         })?;
@@ -170,7 +198,7 @@ impl Simulation {
             *v = velocity(x);
         }
         self.ledger = Ledger::default();
-        self.given_velocities();
+        self.gave_velocities();
         self.clock.next = self.kick(0.0, self.remaining())?;
         Ok(())
     }
@@ -187,73 +215,22 @@ impl Simulation {
         self.clock.time += dt;
         self.clock.stage_time += dt;
         self.clock.dt = dt;
+        let at_rest = self.at_rest();
         let remaining = self.remaining();
-        if remaining > 0.0 {
+        if remaining > 0.0 && !at_rest {
             self.clock.next = self.kick(0.5 * dt, remaining)?;
             return Ok(());
         }
         self.kick(0.5 * dt, 0.0)?;
+        if !at_rest {
+            self.has_to_be_at_rest()?;
+        }
         self.clock.stage += 1;
         if self.finished() {
             Ok(())
         } else {
             self.begin_stage()
         }
-    }
-
-    fn begin_stage(&mut self) -> Result<(), Stop> {
-        self.clock.stage_time = 0.0;
-        self.clock.stage_steps = 0;
-        let stage = &self.plan.stages[self.clock.stage];
-        self.clock.given_velocities = false;
-        if !stage.initial_velocities.is_empty() || self.clock.stage == 0 {
-            for &(body, velocity) in &stage.initial_velocities {
-                let of_body = self.particles.body.iter().map(|&b| usize::from(b) == body);
-                for (v, _) in self
-                    .particles
-                    .velocity
-                    .iter_mut()
-                    .zip(of_body)
-                    .filter(|p| p.1)
-                {
-                    *v = velocity;
-                }
-            }
-            self.given_velocities();
-        }
-        self.clock.next = self.kick(0.0, self.remaining())?;
-        Ok(())
-    }
-
-    fn given_velocities(&mut self) {
-        self.clock.given_velocities = true;
-        let p = &self.particles;
-        let kinetic = p
-            .mass
-            .iter()
-            .zip(&p.velocity)
-            .map(|(m, v)| 0.5 * m * v.length_squared())
-            .sum();
-        self.ledger.give(kinetic);
-    }
-
-    /// Time left in the stage, s; infinite if it is limited by steps that are not yet done.
-    fn remaining(&self) -> f64 {
-        match self.plan.stages[self.clock.stage].until {
-            Until::Duration(duration) => {
-                let left = duration - self.clock.stage_time;
-                if left > 1e-12 * duration { left } else { 0.0 }
-            }
-            Until::Steps(steps) if self.clock.stage_steps < steps => f64::INFINITY,
-            Until::Steps(_) => 0.0,
-        }
-    }
-
-    pub(crate) fn local_damping(&self) -> f64 {
-        let stage = self.clock.stage.min(self.plan.stages.len() - 1);
-        self.plan.stages[stage]
-            .damping
-            .unwrap_or(self.plan.numerics.damping)
     }
 
     /// Sorts particles by element and numbers the active cells and nodes anew.
@@ -319,6 +296,59 @@ impl Simulation {
     }
 }
 
+/// The initial stress of all particles, and the points of the loads.
+fn ground(
+    plan: &Plan,
+    particles: &mut Particles,
+    offsets: &[u32],
+) -> Result<Vec<LoadPoint>, SetupError> {
+    let ground = plan.initial_stress.as_ref().map(|setting| {
+        let switched = (&plan.boundaries, &plan.loads);
+        let surfaces = switched.0.iter().map(|b| &b.surfaces);
+        let surfaces = surfaces.chain(switched.1.iter().map(|l| &l.surfaces));
+        let mut held = vec![false; plan.mesh.nodes.len()];
+        for n in surfaces.flat_map(|s| surface_nodes(&plan.mesh, s)) {
+            held[n as usize] = true;
+        }
+        let filled = (&*particles, offsets);
+        let soils = (&plan.bodies[..], &plan.materials[..]);
+        let held = |n: u32| held[n as usize];
+        Ground::new(setting, &plan.mesh, soils, plan.gravity, filled, held).map(|g| (g, setting))
+    });
+    let ground = ground.transpose()?;
+    if let Some((ground, setting)) = &ground {
+        initial_stress::apply(ground, setting, particles, &plan.bodies, &plan.materials)?;
+    }
+    let k0 = |body: usize| ground.as_ref().and_then(|g| g.1.k0[body]);
+    for load in plan
+        .loads
+        .iter()
+        .filter(|l| l.kind == LoadKind::InitialStress)
+    {
+        if k0(load.body).is_none() {
+            return Err(SetupError::NoInitialStress {
+                load: load.name.clone(),
+                body: plan.bodies[load.body].name.clone(),
+            });
+        }
+    }
+    let surroundings = Surroundings {
+        share: plan.symmetry.map_or(1.0, |s| s.share),
+        up: -plan.gravity.normalize_or_zero(),
+        stress: &|body, x| match (&ground, k0(body)) {
+            (Some((ground, _)), Some(k0)) => ground.stress(x, k0),
+            _ => [0.0; 6],
+        },
+    };
+    Ok(load_points(
+        &plan.mesh,
+        &plan.loads,
+        particles,
+        offsets,
+        &surroundings,
+    )?)
+}
+
 fn check_reactions(plan: &Plan) -> Result<(), SetupError> {
     for probe in plan
         .probes
@@ -337,30 +367,4 @@ fn check_reactions(plan: &Plan) -> Result<(), SetupError> {
         }
     }
     Ok(())
-}
-
-fn absorbing(plan: &Plan, particles: &Particles, offsets: &[u32]) -> Absorbing {
-    Absorbing::new(&plan.mesh, &plan.boundaries, |face: Face| {
-        let sides = [Some(face), plan.mesh.across(face)];
-        sides.into_iter().flatten().find_map(|side| {
-            let first = offsets[side.element as usize];
-            (first < offsets[side.element as usize + 1]).then(|| {
-                let body = usize::from(particles.body[first as usize]);
-                &plan.materials[plan.bodies[body].material]
-            })
-        })
-    })
-}
-
-fn follower(plan: &Plan, constraints: &Constraints) -> Follower {
-    let is_absorbing = |kind: &BoundaryKind| matches!(kind, BoundaryKind::Absorbing { .. });
-    let surfaces: Vec<&[Face]> = plan
-        .boundaries
-        .iter()
-        .filter(|b| is_absorbing(&b.kind))
-        .flat_map(|b| b.surfaces.iter().map(|&s| &plan.mesh.surfaces[s].faces[..]))
-        .collect();
-    Follower::new(&plan.mesh, &surfaces, |n| {
-        constraints.of(n).map_or(Mat3::IDENTITY, |c| c.free)
-    })
 }

@@ -53,12 +53,7 @@ fn plan(split: Split, mass: MassMatrix) -> Plan {
             mass,
             ..Numerics::default()
         },
-        stages: vec![Stage {
-            name: "fall".into(),
-            until: Until::Steps(50),
-            damping: None,
-            initial_velocities: vec![],
-        }],
+        stages: vec![Stage::new("fall", Until::Steps(50))],
     }
 }
 

@@ -170,12 +170,7 @@ fn at_rest(report: &mut Report, fidelity: Fidelity) {
         damping: Some(0.4),
         ..plan.stages[0].clone()
     };
-    let free = Stage {
-        name: "free".to_owned(),
-        until: Until::Steps(10),
-        damping: None,
-        initial_velocities: vec![],
-    };
+    let free = Stage::new("free", Until::Steps(10));
     plan.stages = vec![stage, free];
     let (mut worst, mut energies) = (0.0f64, None);
     setup::run(plan, |s| {

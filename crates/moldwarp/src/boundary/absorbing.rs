@@ -23,6 +23,8 @@ pub struct AbsorbingNode {
     pub spring: Mat3,
     /// Displacement a since the boundary is there, m.
     pub displacement: Vec3,
+    /// R₀, the reaction that held the node when the boundary was switched on, N.
+    pub rest: Vec3,
 }
 
 /// All nodes on absorbing faces.
@@ -36,7 +38,7 @@ impl Absorbing {
     /// `material` gives the material next to a face, if there is any.
     pub fn new<'a>(
         mesh: &Mesh,
-        boundaries: &[Boundary],
+        boundaries: &[&Boundary],
         material: impl Fn(Face) -> Option<&'a NamedMaterial>,
     ) -> Absorbing {
         let mut absorbing = Absorbing {
@@ -74,7 +76,18 @@ impl Absorbing {
     /// The absorbing node at a mesh node.
     #[inline]
     pub fn of(&self, node: u32) -> Option<&AbsorbingNode> {
-        self.nodes.get(self.of_node[node as usize] as usize)
+        self.nodes.get(*self.of_node.get(node as usize)? as usize)
+    }
+
+    /// Takes over what nodes have been through that were absorbing before; the others begin with
+    /// the reaction that `rest` gives, N.
+    pub fn go_on_from(&mut self, before: &Absorbing, rest: impl Fn(u32) -> Vec3) {
+        for node in &mut self.nodes {
+            match before.of(node.node) {
+                Some(old) => (node.displacement, node.rest) = (old.displacement, old.rest),
+                None => node.rest = rest(node.node),
+            }
+        }
     }
 
     fn entry(&mut self, node: u32) -> &mut AbsorbingNode {
@@ -87,6 +100,7 @@ impl Absorbing {
                 dashpot,
                 spring,
                 displacement: Vec3::ZERO,
+                rest: Vec3::ZERO,
             });
         }
         &mut self.nodes[*index as usize]
@@ -120,13 +134,13 @@ fn face_matrices(
 impl AbsorbingNode {
     /// Velocity at the end of a kick of length `h` (s) of a node of mass `m` (kg), with mapped
     /// velocity `v` and force `f` without the boundary's:
-    /// (m + ½hC + ¼h²K) v⁺ = (m − ½hC + ¼h²K) v + h (f − K a), in the subspace that `constraints`
+    /// (m + ½hC + ¼h²K) v⁺ = (m − ½hC + ¼h²K) v + h (f + R₀ − K a), in the subspace that `constraints`
     /// leave.
     pub fn solve(&self, m: f64, v: Vec3, f: Vec3, h: f64, constraints: &Constraints) -> Vec3 {
         let inertia = Mat3::IDENTITY * m + self.spring * (0.25 * h * h);
         let half = self.dashpot * (0.5 * h);
         let matrix = inertia + half;
-        let right = (inertia - half) * v + (f - self.spring * self.displacement) * h;
+        let right = (inertia - half) * v + (f + self.rest - self.spring * self.displacement) * h;
         match constraints.of(self.node) {
             None => matrix.inverse() * right,
             Some(held) => {
@@ -140,7 +154,8 @@ impl AbsorbingNode {
     /// Force of the boundary on the node in a kick of length `h` that leads from `before` to
     /// `after`, N.
     pub fn force(&self, before: Vec3, after: Vec3, h: f64) -> Vec3 {
-        -(self.dashpot * (0.5 * (before + after))
-            + self.spring * (self.displacement + (after - before) * (0.25 * h)))
+        self.rest
+            - self.dashpot * (0.5 * (before + after))
+            - self.spring * (self.displacement + (after - before) * (0.25 * h))
     }
 }

@@ -61,7 +61,7 @@ pub struct Constraints {
 impl Constraints {
     /// Gathers the boundaries of each node. Single directions are held first, then rollers in the
     /// order of the scene; what a direction shares with those before it is left out.
-    pub fn new(mesh: &Mesh, boundaries: &[Boundary]) -> Constraints {
+    pub fn new(mesh: &Mesh, boundaries: &[&Boundary]) -> Constraints {
         // Speed and function of each direction that is given.
         type Components = [Option<(f64, usize)>; 3];
         let mut axes: Vec<(u32, Components)> = Vec::new();
@@ -198,7 +198,7 @@ pub fn surface_nodes(mesh: &Mesh, surfaces: &[usize]) -> Vec<u32> {
 /// Normals of the mesh's outside count with their sign: the two sides of a thin wedge, whose normals
 /// are nearly opposite, are two surfaces, and their common edge moves along itself only. Faces
 /// inside the mesh are listed from either side, so that their normals have no sign.
-fn roller_normals(mesh: &Mesh, boundaries: &[Boundary]) -> Vec<(u32, Vec<Vec3>)> {
+fn roller_normals(mesh: &Mesh, boundaries: &[&Boundary]) -> Vec<(u32, Vec<Vec3>)> {
     let rollers = boundaries
         .iter()
         .filter(|b| matches!(b.kind, BoundaryKind::Roller));
@@ -257,7 +257,7 @@ mod tests {
     fn rollers_leave_faces_edges_and_corners_their_freedom() {
         let mesh = box_mesh(Vec3::ONE, [2, 2, 2]).unwrap();
         let rollers = boundary(&mesh, &["x-min", "y-min", "z-min"], BoundaryKind::Roller);
-        let constraints = Constraints::new(&mesh, &[rollers]);
+        let constraints = Constraints::new(&mesh, &[&rollers]);
         let free = |x: Vec3| {
             let node = mesh
                 .nodes
@@ -286,7 +286,7 @@ mod tests {
             BoundaryKind::Prescribed { velocity, function },
         );
         let side = boundary(&mesh, &["x-min"], BoundaryKind::Roller);
-        let mut constraints = Constraints::new(&mesh, &[side, plate]);
+        let mut constraints = Constraints::new(&mesh, &[&side, &plate]);
         constraints.set_time(1.0, true);
         let node = mesh
             .nodes
@@ -321,7 +321,7 @@ mod tests {
             let mesh = sector(degrees);
             for names in [["theta-min", "theta-max"], ["theta-max", "theta-min"]] {
                 let rollers = boundary(&mesh, &names, BoundaryKind::Roller);
-                let constraints = Constraints::new(&mesh, &[rollers]);
+                let constraints = Constraints::new(&mesh, &[&rollers]);
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 for (node, x) in mesh.nodes.iter().enumerate() {
                     let free = constraints.of(node as u32).map(|c| c.free * Vec3::ONE);
@@ -347,7 +347,7 @@ mod tests {
         let mesh = sector(20.0);
         let names = ["theta-min", "theta-max", "r-max"];
         let rollers = boundary(&mesh, &names, BoundaryKind::Roller);
-        let constraints = Constraints::new(&mesh, &[rollers]);
+        let constraints = Constraints::new(&mesh, &[&rollers]);
         for (node, x) in mesh.nodes.iter().enumerate() {
             let plane = x.y == 0.0 || (x.y - x.x * 20f64.to_radians().tan()).abs() < 1e-9;
             if plane && x.truncate().length() > 1.999 {
@@ -373,7 +373,7 @@ mod tests {
         }
         mesh.surfaces[0].faces = faces;
         let wall = boundary(&mesh, &["x-min"], BoundaryKind::Roller);
-        let constraints = Constraints::new(&mesh, &[wall]);
+        let constraints = Constraints::new(&mesh, &[&wall]);
         assert_eq!(constraints.all.len(), 9);
         assert!(constraints.all.iter().all(|c| c.held.len() == 1));
     }

@@ -10,6 +10,7 @@ use crate::Vec3;
 use crate::mesh::{Face, Mesh};
 use crate::particles::Particles;
 use crate::plan::{Load, LoadKind};
+use crate::tensor::{self, Voigt};
 
 /// Barycentric coordinates of the surface points of a triangle.
 const POINTS: [[f64; 3]; 3] = {
@@ -39,14 +40,23 @@ pub struct LoadError {
     pub total: usize,
 }
 
-/// The points of all loads. `offsets` are the first particles of the elements; `share` is the part of
-/// the whole body that the mesh is, by which forces of the whole body are cut down.
+/// What loads have to know beyond surfaces and particles.
+pub struct Surroundings<'a> {
+    /// Part of the whole body that the mesh is, by which forces of the whole body are cut down.
+    pub share: f64,
+    /// Unit vector against gravity; 0 without gravity.
+    pub up: Vec3,
+    /// Initial stress of a body at a point, Pa.
+    pub stress: &'a dyn Fn(usize, Vec3) -> Voigt,
+}
+
+/// The points of all loads. `offsets` are the first particles of the elements.
 pub fn load_points(
     mesh: &Mesh,
     loads: &[Load],
     particles: &Particles,
     offsets: &[u32],
-    share: f64,
+    ground: &Surroundings,
 ) -> Result<Vec<LoadPoint>, LoadError> {
     let mut points = Vec::new();
     for (number, load) in loads.iter().enumerate() {
@@ -63,11 +73,17 @@ pub fn load_points(
                 continue;
             };
             let area = mesh.face_area(side);
-            let force = match load.kind {
+            let force = |x: Vec3| match load.kind {
                 LoadKind::Traction(t) => t * area.length(),
                 LoadKind::Pressure(p) => -area * p,
-                LoadKind::Force(f) => f * (share * area.length() / total),
-            } / 3.0;
+                LoadKind::LinearPressure {
+                    value,
+                    gradient,
+                    level,
+                } => -area * (value + gradient * (level - x.dot(ground.up))),
+                LoadKind::Force(f) => f * (ground.share * area.length() / total),
+                LoadKind::InitialStress => tensor::times(&(ground.stress)(load.body, x), area),
+            };
             let corners = mesh.face_nodes(side).map(|n| mesh.nodes[n as usize]);
             for weights in POINTS {
                 let x: Vec3 = (0..3).map(|i| corners[i] * weights[i]).sum();
@@ -77,7 +93,7 @@ pub fn load_points(
                     load: number as u32,
                     particle,
                     offset,
-                    force,
+                    force: force(x) / 3.0,
                 });
             }
         }

@@ -8,4 +8,4 @@ mod load;
 pub use absorbing::{Absorbing, AbsorbingNode};
 pub use constraints::{Constraint, Constraints, surface_nodes};
 pub use function::Function;
-pub use load::{LoadError, LoadPoint, load_points};
+pub use load::{LoadError, LoadPoint, Surroundings, load_points};

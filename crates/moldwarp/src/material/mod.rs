@@ -81,6 +81,17 @@ impl Material {
         }
     }
 
+    /// Whether a stress (Pa) is beyond the strength, by more than round-off.
+    pub fn yields(&self, stress: &Voigt) -> bool {
+        match self {
+            Material::LinearElastic(_) => false,
+            Material::MohrCoulomb(soil) => {
+                let size = stress.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+                soil.yield_function(stress) > 1e-9 * size
+            }
+        }
+    }
+
     /// The elastic part of the model.
     pub fn elasticity(&self) -> &LinearElastic {
         match self {

@@ -84,6 +84,18 @@ impl Probes {
         }
     }
 
+    /// Displacements of surface nodes count from now.
+    pub(crate) fn reset_displacement(&mut self) {
+        for place in &mut self.places {
+            if let Place::Nodes { nodes, .. } = place {
+                for node in nodes {
+                    node.start += node.displacement;
+                    node.displacement = Vec3::ZERO;
+                }
+            }
+        }
+    }
+
     /// Name and unit of each column.
     pub(crate) fn columns(plan: &Plan) -> Vec<(String, &'static str)> {
         let mut columns = Vec::new();

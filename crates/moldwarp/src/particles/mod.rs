@@ -1,8 +1,10 @@
 //! Material points: a structure of arrays, ordered by the element they are in.
 
+pub mod initial_stress;
 mod order;
 mod seeding;
 
+pub use initial_stress::{InitialStress, InitialStressError};
 pub use order::Order;
 pub use seeding::{SeedingError, seed};
 

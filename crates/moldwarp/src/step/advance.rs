@@ -35,9 +35,10 @@ fn move_particles(sim: &mut Simulation) {
         active,
         nodes,
         ledger,
+        gravity,
         ..
     } = sim;
-    let (mesh, active, nodes, gravity) = (&plan.mesh, &*active, &nodes[..], plan.gravity);
+    let (mesh, active, nodes, gravity) = (&plan.mesh, &*active, &nodes[..], *gravity);
     let mass = &particles.mass;
     let arrays = (&mut particles.position[..], &mut particles.displacement[..]);
     let block = ByCell::new(&active.offsets, arrays);

@@ -34,6 +34,7 @@ mod to_nodes;
 mod to_particles;
 
 pub use active::Active;
+pub(crate) use nodes::unheld;
 pub use state::{CellForce, CellStrain, CellSums, Node};
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
@@ -55,6 +56,7 @@ impl Simulation {
     /// Advances velocities from `before` seconds before now to half the coming step after now.
     /// Returns that coming step: the stable one, at most `limit` (0 at the end of a stage).
     pub(crate) fn kick(&mut self, before: f64, limit: f64) -> Result<f64, Stop> {
+        self.gravity = self.plan.gravity * self.switches.gravity(self.clock.time);
         to_nodes::run(self, before);
         let stable = time_step::choose(self).map_err(|error| self.no_time_step(error))?;
         // A step that would leave a sliver of the stage is stretched to its end.
@@ -66,7 +68,7 @@ impl Simulation {
         let after = 0.5 * dt;
         self.constraints.set_time(
             self.clock.time + after,
-            before == 0.0 && self.clock.given_velocities,
+            before == 0.0 && self.clock.new_constraints,
         );
         nodes::run(self, before, after);
         correction::receive(self, before + after);
@@ -112,13 +114,9 @@ mod tests {
             boundaries: vec![],
             loads: vec![],
             probes: vec![],
+            initial_stress: None,
             numerics: Numerics::default(),
-            stages: vec![Stage {
-                name: "run".into(),
-                until: Until::Steps(1000),
-                damping: None,
-                initial_velocities: vec![],
-            }],
+            stages: vec![Stage::new("run", Until::Steps(1000))],
         };
         Simulation::new(plan).unwrap()
     }

@@ -1,10 +1,11 @@
 //! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
-use super::{BLOCK, Node};
-use crate::measure::DriftWork;
+use super::{Active, BLOCK, Node};
+use crate::measure::{DriftWork, Forces};
+use crate::mesh::Mesh;
 use crate::parallel::fold;
-use crate::simulation::Simulation;
+use crate::simulation::{Cells, Simulation};
 use crate::tensor;
 use crate::{Mat3, Vec3};
 use std::ops::Range;
@@ -24,16 +25,18 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         constraints,
         absorbing,
         ledger,
+        gravity,
+        watch,
         ..
     } = sim;
-    let (active, mesh, gravity, cells) = (&*active, &plan.mesh, plan.gravity, &*cells);
+    let (active, mesh, gravity, cells) = (&*active, &plan.mesh, *gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let work = fold(items, BLOCK, &|(slots, nodes): (
+    let (work, forces) = fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let mut work = DriftWork::default();
+        let (mut work, mut forces) = (DriftWork::default(), Forces::default());
         for (slot, node) in slots.zip(nodes) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
@@ -46,17 +49,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 continue;
             }
             let mesh_node = active.nodes[slot];
-            let internal: Vec3 = active
-                .attached(slot)
-                .iter()
-                .map(|&(c, local)| {
-                    let force = &cells.forces[c as usize];
-                    let gradient =
-                        mesh.all_gradients(active.elements[c as usize] as usize)[local as usize];
-                    let stress = std::array::from_fn(|k| force.stress[k] + force.viscous[k]);
-                    -tensor::times(&stress, gradient)
-                })
-                .sum();
+            let internal = internal_force(slot, active, mesh, cells);
             let unbalanced = internal + gravity * node.mass + node.load;
             let constraint = constraints.of(mesh_node);
             // What a constraint holds is balanced and not to be damped.
@@ -81,13 +74,41 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 node.acceleration = constraint.free * node.acceleration + held;
             }
             node.reaction = node.acceleration * node.mass - force;
+            forces.add(node, gravity);
             if before > 0.0 {
                 work.add(node, gravity);
             }
         }
-        work
+        (work, forces)
     });
     ledger.kick(work);
+    watch.forces = forces;
+}
+
+/// −Σ S ∇N_i of a node, N.
+fn internal_force(slot: usize, active: &Active, mesh: &Mesh, cells: &Cells) -> Vec3 {
+    let force = |&(c, local): &(u32, u8)| {
+        let force = &cells.forces[c as usize];
+        let gradient = mesh.all_gradients(active.elements[c as usize] as usize)[local as usize];
+        let stress = std::array::from_fn(|k| force.stress[k] + force.viscous[k]);
+        -tensor::times(&stress, gradient)
+    };
+    active.attached(slot).iter().map(force).sum()
+}
+
+/// Forces that nodes would follow were nothing to hold them, N, by mesh node: for what is to begin
+/// in equilibrium.
+pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
+    super::to_nodes::run(sim, 0.0);
+    apply_loads(sim);
+    let sim = &*sim;
+    move |mesh_node| {
+        let slot = sim.active.slot_of_node[mesh_node as usize] as usize;
+        sim.nodes.get(slot).map_or(Vec3::ZERO, |node| {
+            let internal = internal_force(slot, &sim.active, &sim.plan.mesh, &sim.cells);
+            internal + sim.gravity * node.mass + node.load
+        })
+    }
 }
 
 /// Loads on particles, at the shape functions of the points they act on.
@@ -99,14 +120,18 @@ fn apply_loads(sim: &mut Simulation) {
         nodes,
         loads,
         clock,
+        switches,
         ..
     } = sim;
     let mesh = &plan.mesh;
+    nodes.iter_mut().for_each(|node| node.load = Vec3::ZERO);
     for point in loads.iter() {
         let p = point.particle as usize;
         let e = particles.element[p] as usize;
         let n = mesh.barycentric(e, particles.position[p] + point.offset);
-        let force = point.force * plan.loads[point.load as usize].function.value(clock.time);
+        let load = point.load as usize;
+        let factor = switches.load(load, clock.time);
+        let force = point.force * (factor * plan.loads[load].function.value(clock.time));
         for (i, &mesh_node) in mesh.tets[e].iter().enumerate() {
             nodes[active.slot_of_node[mesh_node as usize] as usize].load += force * n[i];
         }

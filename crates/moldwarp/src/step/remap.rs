@@ -67,16 +67,15 @@ fn average(sim: &mut Simulation) {
 /// v_i with constraints applied again, Δu_i, and the first half of its work.
 fn move_nodes(sim: &mut Simulation, theta: f64, dt: f64) {
     let Simulation {
-        plan,
         active,
         nodes,
         cells,
         constraints,
         ledger,
+        gravity,
         ..
     } = sim;
-    let (active, sums, constraints, gravity) =
-        (&*active, &cells.sums[..], &*constraints, plan.gravity);
+    let (active, sums, constraints, gravity) = (&*active, &cells.sums[..], &*constraints, *gravity);
     let items = (0..nodes.len(), &mut nodes[..]);
     let work = fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,

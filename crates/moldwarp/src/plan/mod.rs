@@ -1,9 +1,14 @@
 //! What is to be computed: checked, in SI units, every name resolved to a number.
 
+mod stage;
+
+pub use stage::{Equilibrium, Item, Level, Ramp, Stage, Until};
+
 use crate::Vec3;
 use crate::boundary::Function;
 use crate::material::Material;
 use crate::mesh::Mesh;
+use crate::particles::InitialStress;
 use crate::symmetry::Symmetry;
 
 /// Everything that decides a simulation's result. Output is not part of it.
@@ -20,6 +25,8 @@ pub struct Plan {
     pub boundaries: Vec<Boundary>,
     pub loads: Vec<Load>,
     pub probes: Vec<Probe>,
+    /// Stress before the first stage, if the ground has any.
+    pub initial_stress: Option<InitialStress>,
     pub numerics: Numerics,
     pub stages: Vec<Stage>,
 }
@@ -144,6 +151,15 @@ pub enum LoadKind {
     Traction(Vec3),
     /// Against the body, along the surface's normal at the start, Pa.
     Pressure(f64),
+    /// The same, growing with depth: `value` Pa at the elevation `level` (m, against gravity), and
+    /// `gradient` Pa more for each metre below.
+    LinearPressure {
+        value: f64,
+        gradient: f64,
+        level: f64,
+    },
+    /// What the ground's initial stress needs to hold it.
+    InitialStress,
     /// The whole surface's force, N, spread evenly over its area; with a symmetry that of the whole
     /// body.
     Force(Vec3),
@@ -287,23 +303,4 @@ impl Default for Numerics {
             max_time_step: None,
         }
     }
-}
-
-#[derive(Clone, Debug)]
-pub struct Stage {
-    pub name: String,
-    pub until: Until,
-    /// Local damping in this stage, if it differs from [`Numerics::damping`].
-    pub damping: Option<f64>,
-    /// Velocities given to whole bodies when the stage begins, m/s.
-    pub initial_velocities: Vec<(usize, Vec3)>,
-}
-
-/// When a stage ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Until {
-    /// After this time, s.
-    Duration(f64),
-    /// After so many steps.
-    Steps(u64),
 }

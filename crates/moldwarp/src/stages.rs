@@ -1,0 +1,165 @@
+//! How stages begin and end.
+
+use crate::boundary::{Absorbing, Constraints};
+use crate::measure::Watch;
+use crate::mesh::{Face, Follower};
+use crate::plan::{Boundary, BoundaryKind, Plan, Until};
+use crate::simulation::{Simulation, Stop};
+use crate::{Mat3, Vec3};
+
+impl Simulation {
+    /// Makes the changes of the stage that begins, and its first half kick.
+    pub(crate) fn begin_stage(&mut self) -> Result<(), Stop> {
+        self.clock.stage_time = 0.0;
+        self.clock.stage_steps = 0;
+        self.watch = Watch::default();
+        let first = self.clock.stage == 0;
+        let stage = &self.plan.stages[self.clock.stage];
+        let switched = self.switches.begin(stage, self.clock.time);
+        let (reset, gives) = (
+            stage.reset_displacement,
+            !stage.initial_velocities.is_empty(),
+        );
+        self.clock.new_constraints = switched && !first;
+        if switched || first {
+            self.set_boundaries(first);
+        }
+        if reset {
+            self.particles.displacement.fill(Vec3::ZERO);
+            self.probes.reset_displacement();
+        }
+        if gives || first {
+            self.give_velocities();
+        }
+        self.clock.next = self.kick(0.0, self.remaining())?;
+        Ok(())
+    }
+
+    fn give_velocities(&mut self) {
+        let given = &self.plan.stages[self.clock.stage].initial_velocities;
+        for &(body, velocity) in given {
+            let particles = self.particles.velocity.iter_mut().zip(&self.particles.body);
+            particles
+                .filter(|p| usize::from(*p.1) == body)
+                .for_each(|(v, _)| *v = velocity);
+        }
+        self.gave_velocities();
+    }
+
+    /// Books the velocities that particles have been given.
+    pub(crate) fn gave_velocities(&mut self) {
+        self.clock.new_constraints = true;
+        let p = &self.particles;
+        let kinetic = p
+            .mass
+            .iter()
+            .zip(&p.velocity)
+            .map(|(m, v)| 0.5 * m * v.length_squared())
+            .sum();
+        self.ledger.give(kinetic);
+    }
+
+    /// Sets up the boundaries that are on. An absorbing one begins in equilibrium: with the reaction
+    /// that has held its nodes, at the start of a run with that of the initial stress.
+    fn set_boundaries(&mut self, first: bool) {
+        let boundaries: Vec<&Boundary> = (self.plan.boundaries.iter())
+            .zip(&self.switches.boundaries)
+            .filter(|b| *b.1)
+            .map(|b| b.0)
+            .collect();
+        let constraints = Constraints::new(&self.plan.mesh, &boundaries);
+        let free = |n: u32| constraints.of(n).map_or(Mat3::IDENTITY, |c| c.free);
+        let mut absorbing = absorbing(self, &boundaries);
+        self.follower = follower(&self.plan, &boundaries, free);
+        let before = std::mem::take(&mut self.absorbing);
+        if first && self.plan.initial_stress.is_some() {
+            self.gravity = self.plan.gravity * self.switches.gravity(0.0);
+            let unheld = crate::step::unheld(self);
+            absorbing.go_on_from(&before, |n| -(free(n) * unheld(n)));
+        } else if !first {
+            let held = |n: u32| {
+                self.node(n)
+                    .map_or(Vec3::ZERO, |n| n.reaction + n.absorbing)
+            };
+            absorbing.go_on_from(&before, |n| free(n) * held(n));
+        }
+        self.constraints = constraints;
+        self.absorbing = absorbing;
+    }
+
+    /// Time left in the stage, s; infinite if it is limited by steps that are not yet done.
+    pub(crate) fn remaining(&self) -> f64 {
+        match self.plan.stages[self.clock.stage].until {
+            Until::Duration(duration)
+            | Until::Equilibrium {
+                limit: duration, ..
+            } => {
+                let left = duration - self.clock.stage_time;
+                if left > 1e-12 * duration { left } else { 0.0 }
+            }
+            Until::Steps(steps) if self.clock.stage_steps < steps => f64::INFINITY,
+            Until::Steps(_) => 0.0,
+        }
+    }
+
+    /// Whether a stage that ends in equilibrium has got there.
+    pub(crate) fn at_rest(&mut self) -> bool {
+        match self.plan.stages[self.clock.stage].until {
+            Until::Equilibrium { judged, .. } => {
+                let kinetic = self.ledger.energies().kinetic_grid;
+                self.watch
+                    .look(&self.scale, kinetic, self.clock.stage_time, &judged)
+            }
+            Until::Duration(_) | Until::Steps(_) => false,
+        }
+    }
+
+    /// At the end of a stage that did not come to rest: an error if it should have.
+    pub(crate) fn has_to_be_at_rest(&self) -> Result<(), Stop> {
+        let stage = &self.plan.stages[self.clock.stage];
+        let Until::Equilibrium { judged, .. } = stage.until else {
+            return Ok(());
+        };
+        let kinetic = self.ledger.energies().kinetic_grid;
+        let [unbalanced, kinetic] = self.watch.ratios(&self.scale, kinetic);
+        Err(Stop::NotAtRest {
+            unbalanced,
+            least_unbalanced: judged.unbalanced,
+            kinetic,
+            least_kinetic: judged.kinetic,
+            stage: stage.name.clone(),
+            time: self.clock.time,
+        })
+    }
+
+    pub(crate) fn local_damping(&self) -> f64 {
+        let stage = self.clock.stage.min(self.plan.stages.len() - 1);
+        self.plan.stages[stage]
+            .damping
+            .unwrap_or(self.plan.numerics.damping)
+    }
+}
+
+fn absorbing(sim: &Simulation, boundaries: &[&Boundary]) -> Absorbing {
+    let (plan, offsets) = (&sim.plan, &sim.order.offsets);
+    Absorbing::new(&plan.mesh, boundaries, |face: Face| {
+        let sides = [Some(face), plan.mesh.across(face)];
+        sides.into_iter().flatten().find_map(|side| {
+            let first = offsets[side.element as usize];
+            (first < offsets[side.element as usize + 1]).then(|| {
+                let body = usize::from(sim.particles.body[first as usize]);
+                &plan.materials[plan.bodies[body].material]
+            })
+        })
+    })
+}
+
+fn follower(plan: &Plan, boundaries: &[&Boundary], free: impl Fn(u32) -> Mat3 + Sync) -> Follower {
+    let is_absorbing = |kind: &BoundaryKind| matches!(kind, BoundaryKind::Absorbing { .. });
+    let surfaces: Vec<&[Face]> = boundaries
+        .iter()
+        .filter(|b| is_absorbing(&b.kind))
+        .flat_map(|b| b.surfaces.iter().map(|&s| &plan.mesh.surfaces[s].faces[..]))
+        .collect();
+    Follower::new(&plan.mesh, &surfaces, free)
+}

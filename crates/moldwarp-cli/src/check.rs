@@ -1,7 +1,7 @@
 //! `moldwarp check`.
 
 use crate::args::CheckArgs;
-use crate::exit::Exit;
+use crate::exit::{Exit, of_stop};
 use crate::run::load;
 use crate::{Failure, say, text};
 use moldwarp_io::check::{Forecast, check as forecast};
@@ -15,7 +15,7 @@ pub fn check(args: &CheckArgs) -> Result<Exit, Failure> {
     match forecast.stopped {
         None => Ok(Exit::Done),
         Some(stop) => Err(Failure::new(
-            Exit::Guard,
+            of_stop(&stop),
             miette::miette!("stopped in the first trial steps: {stop}"),
         )),
     }

@@ -1,5 +1,6 @@
 //! Exit codes. A panic, 101, is a bug.
 
+use moldwarp::Stop;
 use std::process::ExitCode;
 
 /// How a command ended. The book's page on the output says the same of each, from here.
@@ -16,6 +17,17 @@ pub enum Exit {
     Guard = 3,
     /// Reading or writing failed during the run.
     Files = 4,
+    /// A stage reached its limit without equilibrium; the run ends there, and what was computed is
+    /// kept.
+    NotAtRest = 5,
+}
+
+/// The code of a run that was stopped.
+pub fn of_stop(stop: &Stop) -> Exit {
+    match stop {
+        Stop::NotAtRest { .. } => Exit::NotAtRest,
+        Stop::LeftTheMesh { .. } | Stop::TurnedOver { .. } | Stop::TimeStep { .. } => Exit::Guard,
+    }
 }
 
 impl From<Exit> for ExitCode {

@@ -1,7 +1,7 @@
 //! `moldwarp run`.
 
 use crate::args::{RunArgs, SceneArgs};
-use crate::exit::Exit;
+use crate::exit::{Exit, of_stop};
 use crate::progress::Display;
 use crate::{Failure, say, text};
 use moldwarp::measure::Energies;
@@ -22,7 +22,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     match outcome.stopped {
         None => Ok(Exit::Done),
         Some(stop) => Err(Failure::new(
-            Exit::Guard,
+            of_stop(&stop),
             miette::miette!(
                 help = "frames and history up to then are kept",
                 "stopped after {} steps: {stop}",

@@ -177,3 +177,45 @@ fn files_and_folders() {
     ];
     insta::assert_snapshot!(lines.join("\n"));
 }
+
+/// The column at rest under gravity with initial stress, and `old` replaced by `new`.
+fn ground(title: &str, old: &str, new: &str) -> String {
+    let column = replaced("particles_per_element = 4", "k0 = 0.5")
+        .replace("\"0 m/s2\"]", "\"-9.81 m/s2\"]")
+        .replace("cells = [1, 1, 5]", "cells = [2, 2, 5]")
+        .replace(
+            "[probes.bottom]",
+            "[initial_stress]\nkind = \"k0\"\n\n[probes.bottom]",
+        );
+    assert_eq!(column.matches(old).count(), 1, "{old:?} must be there once");
+    let bench = Bench::with(&column.replace(old, new));
+    refused(&bench, title, &["run", "column"])
+}
+
+#[test]
+fn initial_stress() {
+    let sand = "model = \"mohr-coulomb\"\ncohesion = 0\nfriction_angle = \"15 deg\"";
+    let slope = "region = { kind = \"half-space\", point = [0, 0, \"0.2 m\"], normal = [1, 0, 1] }";
+    let low = "region = { min = [0, 0, 0], max = [\"0.05 m\", \"0.1 m\", \"0.5 m\"] }";
+    let lines = [
+        ground("K0 without gravity", "\"-9.81 m/s2\"]", "0]"),
+        ground("K0 under a slope", "volume = \"box\"", slope),
+        ground("K0 beside a step", "volume = \"box\"", low),
+        ground("K0 beyond the strength", "model = \"linear-elastic\"", sand),
+    ];
+    insta::assert_snapshot!(lines.join("\n"));
+}
+
+/// A stage that does not come to rest within its limit: exit code 5, results are kept.
+#[test]
+fn no_equilibrium_is_code_5() {
+    let until = "until = \"equilibrium\"\nduration = \"0.02 s\"";
+    let bench = Bench::with(&replaced("duration = \"0.2 s\"", until));
+    let said = bench.fails(5, &["run", "column"]);
+    assert!(said.contains("out-of-balance ratio"), "{said}");
+    assert!(
+        bench
+            .read("out/column/summary.json")
+            .contains("without equilibrium")
+    );
+}

@@ -108,7 +108,10 @@ fn steps(sim: &Simulation) -> u64 {
     let stages = sim.plan().stages.iter();
     stages
         .map(|stage| match stage.until {
-            Until::Duration(duration) => (duration / sim.next_time_step()).ceil() as u64,
+            Until::Duration(duration)
+            | Until::Equilibrium {
+                limit: duration, ..
+            } => (duration / sim.next_time_step()).ceil() as u64,
             Until::Steps(steps) => steps,
         })
         .sum()

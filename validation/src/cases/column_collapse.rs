@@ -14,6 +14,8 @@ use moldwarp::{Plan, Simulation, Vec3};
 
 const GRAVITY: f64 = 9.81;
 const DENSITY: f64 = 1600.0;
+/// Width of the rings of a deposit's profile, m.
+const RING: f64 = 0.05;
 
 /// Run-out over r₀ in the experiments.
 fn measured(a: f64) -> f64 {
@@ -61,6 +63,8 @@ struct Deposit {
     height: f64,
     /// Change of the soil's volume, without and with what has opened in tension.
     volume: [f64; 2],
+    /// Radius and largest height in rings of 0.05 m.
+    profile: Vec<(f64, f64)>,
 }
 
 fn deposit(s: &Simulation) -> Deposit {
@@ -86,6 +90,14 @@ fn deposit(s: &Simulation) -> Deposit {
         };
         (0..p.len()).map(|i| p.volume[i] * share(i)).sum::<f64>() / first - 1.0
     };
+    let mut profile: Vec<(f64, f64)> = Vec::new();
+    for &i in &order {
+        let ring = (radius(i) / RING).floor() as usize;
+        while profile.len() <= ring {
+            profile.push((RING * (profile.len() as f64 + 0.5), 0.0));
+        }
+        profile[ring].1 = profile[ring].1.max(p.position[i].z);
+    }
     Deposit {
         radius: [
             radius(*quantile.unwrap_or(&0)),
@@ -96,6 +108,7 @@ fn deposit(s: &Simulation) -> Deposit {
             .map(|i| p.position[i].z)
             .fold(0.0, f64::max),
         volume: [volume(true), volume(false)],
+        profile,
     }
 }
 
@@ -121,6 +134,11 @@ pub fn run(fidelity: Fidelity) -> Report {
         "Columns of dry sand collapse",
         "time over √(a r₀/g)",
         "run-out over r₀ (99 % of the mass)",
+    );
+    let mut deposits = Plot::new(
+        "Deposits: largest height of a grain in rings",
+        "distance from the axis over r₀",
+        "height over r₀",
     );
     for a in fidelity.pick(vec![1.0, 2.0], vec![0.5, 1.0, 2.0]) {
         let unit = (a / GRAVITY).sqrt();
@@ -167,6 +185,7 @@ pub fn run(fidelity: Fidelity) -> Report {
                 0.02,
             );
             plot.line(format!("a = {a}, {n} elements"), curve);
+            deposits.line(format!("a = {a}, {n} elements"), d.profile);
         }
         plot.dashed(
             format!("experiments, a = {a}"),
@@ -174,5 +193,6 @@ pub fn run(fidelity: Fidelity) -> Report {
         );
     }
     report.plots.push(("column-collapse".to_owned(), plot));
+    (report.plots).push(("column-collapse-deposits".to_owned(), deposits));
     report
 }

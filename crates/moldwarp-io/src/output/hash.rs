@@ -72,6 +72,7 @@ pub fn scene_hash(plan: &Plan) -> String {
         boundaries,
         loads,
         probes,
+        initial_stress,
         numerics,
         stages,
     } = plan;
@@ -93,6 +94,7 @@ pub fn scene_hash(plan: &Plan) -> String {
     h.text("boundaries", &format!("{boundaries:?}"));
     h.text("loads", &format!("{loads:?}"));
     h.text("probes", &format!("{probes:?}"));
+    h.text("initial_stress", &format!("{initial_stress:?}"));
     h.text("numerics", &format!("{numerics:?}"));
     h.text("stages", &format!("{stages:?}"));
     h.finish()

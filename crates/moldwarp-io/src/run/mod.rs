@@ -287,7 +287,10 @@ pub(crate) fn end_time(sim: &Simulation) -> f64 {
     let left = sim.plan().stages.iter().enumerate().skip(sim.stage());
     left.fold(sim.time(), |end, (number, stage)| {
         let whole = match stage.until {
-            Until::Duration(duration) => duration,
+            Until::Duration(duration)
+            | Until::Equilibrium {
+                limit: duration, ..
+            } => duration,
             Until::Steps(steps) => steps as f64 * sim.next_time_step(),
         };
         let done = if number == sim.stage() {

@@ -1,14 +1,14 @@
 //! Loads on surfaces, each carried by one body.
 
-use super::amount::Spanned;
+use super::amount::{AmountOr, Spanned};
 use super::bodies::touches;
 use super::error::Fault;
 use super::functions::function;
 use super::quantity::Dimension;
-use super::raw::{RawLoad, Text};
+use super::raw::{RawLinear, RawLoad, Text};
 use super::surfaces::{joined, surfaces, unique};
 use super::symmetry::allowed;
-use super::values::{amount, exactly_one, find, placed, span, vector};
+use super::values::{amount, amount_at, exactly_one, find, placed, span, vector};
 use moldwarp::plan::{Body, Load, LoadKind, Place};
 use moldwarp::{Mesh, Symmetry};
 
@@ -69,25 +69,46 @@ fn kind(item: &Spanned<RawLoad>, symmetry: Option<&Symmetry>) -> Result<LoadKind
             ("traction", span(&raw.traction)),
             ("pressure", span(&raw.pressure)),
             ("force", span(&raw.force)),
+            ("initial_stress", span(&raw.initial_stress)),
         ],
     )?;
+    if let Some(asked) = &raw.initial_stress {
+        return match asked.get_ref() {
+            true => Ok(LoadKind::InitialStress),
+            false => Err(Fault::new("a load without size")
+                .at(asked.span(), "holds nothing")
+                .help("initial_stress = true, or another size")),
+        };
+    }
     match (&raw.traction, &raw.pressure, &raw.force) {
         (Some(t), _, _) => Ok(LoadKind::Traction(vector(
             "traction",
             t,
             Dimension::Stress,
         )?)),
-        (_, Some(p), _) => Ok(LoadKind::Pressure(amount(
-            "pressure",
-            p,
-            Dimension::Stress,
-        )?)),
+        (_, Some(p), _) => pressure(p),
         (_, _, Some(f)) => {
             let force = vector("force", f, Dimension::Force)?;
             allowed("force", force, f.span(), symmetry)?;
             Ok(LoadKind::Force(force))
         }
         _ => Err(Fault::new("a load needs a size")),
+    }
+}
+
+fn pressure(raw: &Spanned<AmountOr<RawLinear>>) -> Result<LoadKind, Fault> {
+    match raw.get_ref() {
+        AmountOr::Amount(value) => Ok(LoadKind::Pressure(amount_at(
+            "pressure",
+            raw.span(),
+            value,
+            Dimension::Stress,
+        )?)),
+        AmountOr::Table(linear) => Ok(LoadKind::LinearPressure {
+            value: amount("value", &linear.value, Dimension::Stress)?,
+            gradient: amount("gradient", &linear.gradient, Dimension::UnitWeight)?,
+            level: amount("level", &linear.level, Dimension::Length)?,
+        }),
     }
 }
 

@@ -11,6 +11,7 @@ mod cylinder;
 mod document;
 mod error;
 mod functions;
+mod initial_stress;
 mod loads;
 mod materials;
 mod mesh;
@@ -76,6 +77,7 @@ pub(crate) struct Origin {
     name: String,
     overrides: Vec<overrides::Override>,
     time_step: Option<Range<usize>>,
+    initial_stress: Option<Range<usize>>,
     /// Names of bodies and where they stand.
     bodies: Vec<(String, Range<usize>)>,
 }
@@ -87,6 +89,9 @@ impl Origin {
         let fault = match (error, &self.time_step) {
             (SetupError::TimeStep(TimeStepError::AboveStable { .. }), Some(place)) => {
                 above_stable(error, place)
+            }
+            (SetupError::InitialStress(error), _) => {
+                initial_stress::explain(error, self.initial_stress.clone().unwrap_or_default())
             }
             (SetupError::Seeding(SeedingError::Overlap { first, second, .. }), _) => {
                 self.overlap(first, second)
@@ -205,7 +210,14 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     let boundaries = boundaries::boundaries(&raw.boundaries, &mesh)?;
     let loads = loads::loads(&raw.loads, &mesh, symmetry.as_ref(), &bodies)?;
     let probes = probes::probes(&raw.probes, &mesh, &bodies, &boundaries, &mut notes)?;
-    let stages = stages::stages(&raw.stages, &bodies)?;
+    let named = stages::Named {
+        bodies: &bodies,
+        boundaries: &boundaries,
+        loads: &loads,
+    };
+    let stages = stages::stages(&raw.stages, &named)?;
+    let raw_bodies = raw.bodies.0.iter().map(|b| &b.1);
+    let initial_stress = initial_stress::initial_stress(raw.initial_stress.as_ref(), raw_bodies)?;
     let compare = output::compare(&raw.compare, &probes, &folder)?;
     for (m, material) in materials.iter().enumerate() {
         if !bodies.iter().any(|b| b.material == m) {
@@ -230,6 +242,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             boundaries,
             loads,
             probes,
+            initial_stress,
             numerics,
             stages,
         },
@@ -242,6 +255,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         element_tags,
         origin: Origin {
             time_step: values::span(&raw.numerics.time_step),
+            initial_stress: values::span(&raw.initial_stress),
             bodies: raw
                 .bodies
                 .0

@@ -34,6 +34,10 @@ pub(super) struct RawScene {
     /// type: table
     /// default: none
     pub symmetry: Option<Spanned<RawSymmetry>>,
+    /// [Stress](#initial-stress) before the first stage; none without this table.
+    /// type: table
+    /// default: –
+    pub initial_stress: Option<Spanned<RawInitialStress>>,
     /// [Materials](#materials).
     /// type: tables
     pub materials: Named<RawMaterial>,
@@ -218,6 +222,10 @@ pub(super) struct RawBody {
     /// type: 1, 4 or 10
     /// default: 4
     pub particles_per_element: Option<Spanned<i64>>,
+    /// Horizontal over vertical [initial stress](#initial-stress); without it the body has none.
+    /// type: number > 0
+    /// default: –
+    pub k0: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -327,18 +335,38 @@ pub(super) struct RawLoad {
     /// type: stress × 3
     /// default: –
     pub traction: Option<RawVector>,
-    /// Against the body, along the normal at the start; negative pulls.
-    /// type: stress
+    /// Against the body, along the normal at the start; negative pulls. A table grows with
+    /// [depth](#pressure-with-depth).
+    /// type: stress, or table
     /// default: –
-    pub pressure: Option<RawAmount>,
+    pub pressure: Option<Spanned<AmountOr<RawLinear>>>,
     /// Of the whole surface, spread evenly over its area.
     /// type: force × 3
     /// default: –
     pub force: Option<RawVector>,
+    /// What holds the body's [initial stress](#initial-stress) at the surface: a face that it
+    /// supports does not move.
+    /// type: true
+    /// default: –
+    pub initial_stress: Option<Spanned<bool>>,
     /// Factor over time, see [functions](#functions-of-time).
     /// type: table
     /// default: constant
     pub function: Option<Spanned<RawFunction>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawLinear {
+    /// Pressure at the level.
+    /// type: stress
+    pub value: RawAmount,
+    /// More for each length below the level; less above it.
+    /// type: unit weight
+    pub gradient: RawAmount,
+    /// Elevation of the value, against gravity from the origin.
+    /// type: length
+    pub level: RawAmount,
 }
 
 #[derive(Debug, Deserialize)]
@@ -453,6 +481,11 @@ pub(super) struct RawStage {
     /// For `--set` and the log; no two the same.
     /// type: text
     pub name: Text,
+    /// `"equilibrium"`: it ends when the model is at rest, and stops the run (exit code 5) if that
+    /// takes longer than `duration`.
+    /// type: `"equilibrium"`
+    /// default: –
+    pub until: Option<Text>,
     /// Its length in time; the last step is cut to end there.
     /// type: time > 0
     /// default: –
@@ -461,6 +494,26 @@ pub(super) struct RawStage {
     /// type: whole number ≥ 1
     /// default: –
     pub steps: Option<Spanned<i64>>,
+    pub equilibrium: Option<Spanned<RawEquilibrium>>,
+    /// Boundaries and loads, by name, that are switched on when the stage begins. What no earlier
+    /// stage has switched off is off until then.
+    /// type: name or list of names
+    /// default: none
+    pub on: Option<Texts>,
+    /// Boundaries and loads, by name, that are switched off (released) when the stage begins.
+    /// type: name or list of names
+    /// default: none
+    pub off: Option<Texts>,
+    /// Factors of loads, by name, and of `gravity`; all are 1 at the start and stay as a stage
+    /// leaves them. A number changes at once, a [ramp](#ramps) by and by.
+    /// type: names, each with a number or a table
+    /// default: none
+    #[serde(default)]
+    pub scale: Named<AmountOr<RawRamp>>,
+    /// `"displacement"`: displacements of particles and surfaces count from the stage's beginning.
+    /// type: list of `"displacement"`
+    /// default: none
+    pub reset: Option<Texts>,
     /// Local damping in this stage.
     /// type: number, 0 ≤ α < 1
     /// default: that of `numerics`
@@ -470,6 +523,50 @@ pub(super) struct RawStage {
     /// default: none
     #[serde(default)]
     pub initial_velocity: Named<RawVector>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawRamp {
+    /// Factor at the stage's beginning.
+    /// type: number
+    /// default: what it is by then
+    pub from: Option<RawAmount>,
+    /// Factor at the end of the ramp, and from then on.
+    /// type: number
+    pub to: RawAmount,
+    /// How long the ramp takes.
+    /// type: time > 0
+    pub over: RawAmount,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawEquilibrium {
+    /// Most that the out-of-balance ratio may be.
+    /// type: number > 0
+    /// default: 0.01
+    pub unbalanced: Option<RawAmount>,
+    /// Most that the grid's kinetic energy may be of its reference.
+    /// type: number > 0
+    /// default: 1e-4
+    pub kinetic: Option<RawAmount>,
+    /// How long both must hold.
+    /// type: time > 0
+    /// default: time of a P-wave through the model
+    pub hold: Option<RawAmount>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawInitialStress {
+    /// How it is found.
+    /// type: `"k0"`
+    pub kind: Text,
+    /// Pressure on the ground's surface. A load must bring it, too.
+    /// type: stress ≥ 0
+    /// default: 0
+    pub surcharge: Option<RawAmount>,
 }
 
 #[derive(Debug, Default, Deserialize)]

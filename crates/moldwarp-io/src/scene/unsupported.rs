@@ -1,15 +1,11 @@
 //! What the scene format has a name for but this version cannot compute.
 
 /// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
-const KEYS: [(&str, &str); 9] = [
+const KEYS: [(&str, &str); 5] = [
     ("contacts", "gravity"),
     ("particle_spacing", "particles_per_element"),
-    ("until", "duration"),
-    ("on", "duration"),
-    ("off", "duration"),
     ("add", "duration"),
     ("remove", "duration"),
-    ("reset", "duration"),
     ("checkpoint_interval", "frames"),
 ];
 

@@ -3,6 +3,7 @@
 mod messages;
 mod plans;
 mod sectors;
+mod stages;
 
 use super::{Scene, SceneError, load};
 use miette::{GraphicalReportHandler, GraphicalTheme};

@@ -14,7 +14,7 @@ pub struct Variation {
 }
 
 const HOW: &str =
-    "write --vary PATH=VALUE,VALUE,…, for example --vary numerics.courant=0.3,0.4,0.5";
+    "write `--vary PATH=VALUE,VALUE,…`, for example `--vary numerics.courant=0.3,0.4,0.5`";
 
 impl Variation {
     /// Reads all entries `PATH=V1,V2,…`; `sets` are the entries of `--set` beside them.
@@ -69,7 +69,7 @@ impl Variation {
 
 fn twice(path: &str) -> SceneError {
     Fault::new(format!("`{path}` is varied twice"))
-        .help("write all its values in one list, as in --vary PATH=VALUE,VALUE")
+        .help("write all its values in one list, as in `--vary PATH=VALUE,VALUE`")
         .without_file()
 }
 
@@ -84,7 +84,8 @@ fn open(entry: &str) -> Fault {
         "`--vary {entry}`: a bracket or a quote has no counterpart"
     ))
     .help(
-        "brackets and quotes keep commas together, as in --vary 'gravity=[0, 0, -9.81],[0, 0, -1.62]'; \
+        "brackets and quotes keep commas together, as in \
+         `--vary 'gravity=[0, 0, -9.81],[0, 0, -1.62]'`; \
          keep the shell from taking quotes away with another kind of quotes around all",
     )
 }

@@ -22,7 +22,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Sweep(args) => sweep::sweep(&args),
-        Command::SweepPart(args) => return sweep::part(&args).into(),
+        Command::SweepPart(args) => return sweep::part(&args),
         Command::New(args) => new::new(&args),
     };
     match done {

@@ -42,7 +42,7 @@ pub fn runs(variations: &[Variation]) -> Vec<Run> {
 fn combinations(variations: &[Variation]) -> Vec<Vec<String>> {
     variations.iter().fold(vec![Vec::new()], |all, variation| {
         let longer = |first: &Vec<String>| {
-            let with = |value: &String| [&first[..], &[value.clone()]].concat();
+            let with = |value: &String| [&first[..], std::slice::from_ref(value)].concat();
             variation.values.iter().map(with).collect::<Vec<_>>()
         };
         all.iter().flat_map(longer).collect()

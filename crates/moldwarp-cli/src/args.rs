@@ -18,6 +18,14 @@ pub enum Command {
     Run(RunArgs),
     /// Say what a run would be: counts, steps, memory, disk, time; writes nothing
     Check(CheckArgs),
+    /// Compute a scene once for each value, or each combination of values, of --vary
+    ///
+    /// The last --vary changes fastest. A run that stops does not end the sweep. The exit code is 0
+    /// if all runs were done, else the greatest of their codes.
+    Sweep(SweepArgs),
+    /// One run of a sweep, which starts it
+    #[command(hide = true)]
+    SweepPart(PartArgs),
     /// Begin with an example
     New(NewArgs),
 }
@@ -45,6 +53,34 @@ pub struct RunArgs {
     /// Replace an unfinished run; write beside files that are not moldwarp's
     #[arg(long)]
     pub force: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct SweepArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Values that a path of the scene is to have, such as numerics.courant=0.3,0.4; several --vary
+    /// make every combination
+    #[arg(long, value_name = "PATH=V1,V2,…", required = true)]
+    pub vary: Vec<String>,
+    /// Number of runs at a time, which share the threads. The results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: u16,
+    /// Where results go [default: out/<case>-sweep]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace an unfinished sweep; write beside files that are not moldwarp's
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct PartArgs {
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// The fingerprint of the scene as the sweep has checked it
+    #[arg(long)]
+    pub scene_hash: String,
 }
 
 #[derive(Debug, ClapArgs)]

@@ -7,6 +7,7 @@ mod new;
 mod progress;
 mod report;
 mod run;
+mod sweep;
 mod text;
 
 use args::{Args, Command};
@@ -20,13 +21,15 @@ fn main() -> ExitCode {
     let done = match Args::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
+        Command::SweepPart(args) => return sweep::part(&args),
         Command::New(args) => new::new(&args),
     };
     match done {
         Ok(exit) => exit.into(),
         Err(failure) => {
             eprintln!("{:?}", failure.report);
-            failure.exit.into()
+            failure.exit
         }
     }
 }
@@ -40,14 +43,14 @@ fn say(text: &str) {
 /// Why a command ended early: what is shown, and the exit code.
 struct Failure {
     report: miette::Report,
-    exit: Exit,
+    exit: ExitCode,
 }
 
 impl Failure {
-    fn new(exit: Exit, report: impl Into<miette::Report>) -> Failure {
+    fn new(exit: impl Into<ExitCode>, report: impl Into<miette::Report>) -> Failure {
         Failure {
             report: report.into(),
-            exit,
+            exit: exit.into(),
         }
     }
 

@@ -12,12 +12,7 @@ use std::time::Duration;
 
 pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     let (scene, threads) = load(&args.scene)?;
-    let options = RunOptions {
-        out: args.out.clone(),
-        force: args.force,
-        threads,
-    };
-    let outcome = compute(scene, &options, &mut Display::new(threads))?;
+    let outcome = compute(scene, &options(args, threads), &mut Display::new(threads))?;
     say(&conclusion(&outcome));
     match outcome.stopped {
         None => Ok(Exit::Done),
@@ -32,15 +27,30 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     }
 }
 
+/// How the arguments want the run to be made.
+pub fn options(args: &RunArgs, threads: usize) -> RunOptions {
+    RunOptions {
+        out: args.out.clone(),
+        force: args.force,
+        threads,
+    }
+}
+
 /// Sets the threads up and reads the scene. Returns the number of threads beside it.
 pub fn load(args: &SceneArgs) -> Result<(Scene, usize), Failure> {
+    let threads = start_threads(args)?;
+    let scene = scene::load(&args.scene, &args.sets).map_err(Failure::input)?;
+    Ok((scene, threads))
+}
+
+/// Sets the threads up and returns their number.
+pub fn start_threads(args: &SceneArgs) -> Result<usize, Failure> {
     let wanted = args.threads.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new()
         .num_threads(wanted)
         .build_global()
         .map_err(|e| Failure::input(miette::miette!("cannot start {wanted} threads: {e}")))?;
-    let scene = scene::load(&args.scene, &args.sets).map_err(Failure::input)?;
-    Ok((scene, rayon::current_num_threads()))
+    Ok(rayon::current_num_threads())
 }
 
 /// How the run went and where to look.

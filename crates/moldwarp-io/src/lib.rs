@@ -7,4 +7,5 @@ pub mod output;
 mod reference;
 pub mod run;
 pub mod scene;
+pub mod sweep;
 pub mod text;

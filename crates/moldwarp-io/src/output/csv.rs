@@ -1,4 +1,5 @@
-//! Histories: tables of numbers with one header row, comma separated.
+//! Tables with one header row, comma separated: histories, which hold numbers only, and the table
+//! of a sweep, which also holds text.
 
 use super::FileError;
 use std::fs::File;
@@ -70,7 +71,7 @@ impl Writer {
 
 /// The shortest text that reads back as the same number: whole numbers without a point, small
 /// and large ones with an exponent.
-fn push_number(text: &mut String, value: f64) {
+pub(crate) fn push_number(text: &mut String, value: f64) {
     use std::fmt::Write;
     let whole = value.fract() == 0.0 && value.abs() < 1e15;
     let written = if whole {
@@ -81,11 +82,12 @@ fn push_number(text: &mut String, value: f64) {
     debug_assert!(written.is_ok(), "a string takes any text");
 }
 
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
+/// A text as one cell.
+pub(crate) fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
     } else {
-        name.to_owned()
+        text.to_owned()
     }
 }
 
@@ -102,6 +104,24 @@ impl Table {
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let i = self.names.iter().position(|n| n == name)?;
         Some(&self.columns[i])
+    }
+}
+
+/// A table of texts in memory, by rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Records {
+    pub names: Vec<String>,
+    /// As many cells as names.
+    pub rows: Vec<Vec<String>>,
+    /// Where each row stands in the file, from 1.
+    lines: Vec<usize>,
+}
+
+impl Records {
+    /// The cells of the column with this name.
+    pub fn column(&self, name: &str) -> Option<Vec<&str>> {
+        let i = self.names.iter().position(|n| n == name)?;
+        Some(self.rows.iter().map(|row| row[i].as_str()).collect())
     }
 }
 
@@ -132,6 +152,25 @@ pub enum CsvError {
 /// Reads a table: a header row, then numbers. Empty lines and lines that begin with `#` are
 /// passed over.
 pub fn read(path: &Path) -> Result<Table, CsvError> {
+    let records = read_text(path)?;
+    let mut columns = vec![Vec::new(); records.names.len()];
+    for (row, &line) in records.rows.iter().zip(&records.lines) {
+        for (column, cell) in columns.iter_mut().zip(row) {
+            column.push(cell.parse().map_err(|_| CsvError::Number {
+                path: path.to_owned(),
+                line,
+                text: cell.clone(),
+            })?);
+        }
+    }
+    Ok(Table {
+        names: records.names,
+        columns,
+    })
+}
+
+/// The same of a table that may hold text. No cell goes over several lines.
+pub fn read_text(path: &Path) -> Result<Records, CsvError> {
     let text = std::fs::read_to_string(path).map_err(FileError::at("read", path))?;
     let path = || path.to_owned();
     let mut lines = text
@@ -146,29 +185,28 @@ pub fn read(path: &Path) -> Result<Table, CsvError> {
     if names.iter().all(|n| n.parse::<f64>().is_ok()) {
         return Err(CsvError::NoHeader { path: path() });
     }
-    let mut columns = vec![Vec::new(); names.len()];
+    let mut records = Records {
+        names,
+        rows: Vec::new(),
+        lines: Vec::new(),
+    };
     for (i, line) in lines {
-        let row: Vec<&str> = line.split(',').map(str::trim).collect();
-        if row.len() != names.len() {
+        let row = cells(line);
+        if row.len() != records.names.len() {
             return Err(CsvError::Width {
                 path: path(),
                 line: i + 1,
                 found: row.len(),
-                expected: names.len(),
+                expected: records.names.len(),
             });
         }
-        for (column, cell) in columns.iter_mut().zip(row) {
-            column.push(cell.parse().map_err(|_| CsvError::Number {
-                path: path(),
-                line: i + 1,
-                text: cell.to_owned(),
-            })?);
-        }
+        records.rows.push(row);
+        records.lines.push(i + 1);
     }
-    Ok(Table { names, columns })
+    Ok(records)
 }
 
-/// Splits a header row; a name in quotes may hold commas, and quotes doubled.
+/// Splits a row; a cell in quotes may hold commas, and quotes doubled.
 fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut in_quotes = false;

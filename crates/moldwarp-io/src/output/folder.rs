@@ -1,6 +1,7 @@
 //! The folder that a run writes into, and when it may.
 
 use super::FileError;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,10 +33,15 @@ pub struct Folder {
 /// Why a folder is not written into.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
-    #[error("{} holds a run that is not finished", .path.display())]
-    Unfinished { path: PathBuf },
-    #[error("{} holds files that are not moldwarp's, such as {}", .path.display(), .file.display())]
-    Foreign { path: PathBuf, file: PathBuf },
+    /// `what` is a run or a sweep.
+    #[error("{} holds a {what} that is not finished", .path.display())]
+    Unfinished { path: PathBuf, what: &'static str },
+    #[error("{} holds files that are not {whose}, such as {}", .path.display(), .file.display())]
+    Foreign {
+        path: PathBuf,
+        file: PathBuf,
+        whose: &'static str,
+    },
     #[error("{} is the scene's own folder", .path.display())]
     Scene { path: PathBuf },
     #[error("{} is a file, not a folder", .path.display())]
@@ -81,21 +87,20 @@ impl Folder {
     /// scene, which is never written into. True beside the folder: a finished run was replaced.
     pub fn prepare(path: &Path, scene: &Path, force: bool) -> Result<(Folder, bool), FolderError> {
         let named = || path.to_owned();
-        if path.exists() && !path.is_dir() {
-            return Err(FolderError::NotAFolder { path: named() });
-        }
-        if let (Ok(out), Ok(scene)) = (path.canonicalize(), scene.canonicalize())
-            && out == scene
-        {
-            return Err(FolderError::Scene { path: named() });
-        }
+        may_hold_results(path, scene)?;
         let found = look(path)?;
         match found {
-            Found::Unfinished if !force => return Err(FolderError::Unfinished { path: named() }),
+            Found::Unfinished if !force => {
+                return Err(FolderError::Unfinished {
+                    path: named(),
+                    what: "run",
+                });
+            }
             Found::Foreign(file) if !force => {
                 return Err(FolderError::Foreign {
                     path: named(),
                     file,
+                    whose: "moldwarp's",
                 });
             }
             _ => {}
@@ -109,6 +114,28 @@ impl Folder {
         fs::File::create(&log).map_err(FileError::at("create", &log))?;
         fs::create_dir_all(&frames).map_err(FileError::at("create", &frames))?;
         Ok((Folder { path: named() }, replaced))
+    }
+
+    /// A file in the folder that no run put there, if there is one.
+    pub(crate) fn foreign(path: &Path) -> Result<Option<PathBuf>, FileError> {
+        Ok(match look(path)? {
+            Found::Foreign(file) => Some(file),
+            _ => None,
+        })
+    }
+
+    /// Removes what an earlier run wrote, and the folder if nothing else is in it.
+    pub(crate) fn remove(path: &Path) -> Result<(), FileError> {
+        let log = path.join(LOG);
+        if log.exists() {
+            clear(path)?;
+            fs::remove_file(&log).map_err(FileError::at("remove", &log))?;
+        }
+        for folder in [&path.join(FRAMES), path] {
+            // It fails where something is left, which stays, and where there is no folder.
+            let _ = fs::remove_dir(folder);
+        }
+        Ok(())
     }
 
     pub fn path(&self) -> &Path {
@@ -142,17 +169,34 @@ impl Folder {
     }
 }
 
-fn look(path: &Path) -> Result<Found, FileError> {
-    if !path.exists() {
-        return Ok(Found::Nothing);
+/// Refuses what no results go into, whatever is forced: a file, and the folder of the scene.
+pub(crate) fn may_hold_results(path: &Path, scene: &Path) -> Result<(), FolderError> {
+    let named = || path.to_owned();
+    if path.exists() && !path.is_dir() {
+        return Err(FolderError::NotAFolder { path: named() });
     }
+    match (path.canonicalize(), scene.canonicalize()) {
+        (Ok(out), Ok(scene)) if out == scene => Err(FolderError::Scene { path: named() }),
+        _ => Ok(()),
+    }
+}
+
+/// Names of what is in the folder, in order; none if it does not exist.
+pub(crate) fn entries(path: &Path) -> Result<Vec<OsString>, FileError> {
     let mut names = Vec::new();
-    for entry in fs::read_dir(path).map_err(FileError::at("read", path))? {
-        names.push(entry.map_err(FileError::at("read", path))?.file_name());
+    if path.exists() {
+        for entry in fs::read_dir(path).map_err(FileError::at("read", path))? {
+            names.push(entry.map_err(FileError::at("read", path))?.file_name());
+        }
     }
     names.sort();
+    Ok(names)
+}
+
+fn look(path: &Path) -> Result<Found, FileError> {
+    let names = entries(path)?;
     let has = |name: &str| names.iter().any(|n| n == name);
-    let ours = |name: &std::ffi::OsString| {
+    let ours = |name: &OsString| {
         // Without a log, even a file of a name of ours was not put there by a run.
         let name = name.to_str().unwrap_or_default();
         has(LOG) && OURS.contains(&name.strip_suffix(".part").unwrap_or(name))

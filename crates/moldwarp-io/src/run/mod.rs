@@ -210,6 +210,15 @@ pub fn run(
     })
 }
 
+/// Everything that [`run`] asks of a scene before it makes its folder. Returns the columns of the
+/// history.
+pub fn verify(scene: Scene) -> Result<Vec<String>, RunError> {
+    let sim = simulation(scene.plan, &scene.origin, &scene.text)?;
+    let columns = columns(&sim);
+    Expected::read_all(&scene.compare, &columns)?;
+    Ok(columns.into_iter().map(|(name, _)| name).collect())
+}
+
 /// The simulation, or what keeps it from being set up in the words of the scene.
 pub(crate) fn simulation(
     plan: Plan,

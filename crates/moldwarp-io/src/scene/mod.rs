@@ -32,13 +32,14 @@ mod units;
 mod unsupported;
 mod values;
 
+pub(crate) use error::Fault;
 pub use error::SceneError;
 pub use output::{Compare, Every, OutputSettings};
+pub(crate) use overrides::{keys, no_path, value};
 
 #[cfg(test)]
 pub(crate) use {quantity::dimensions, unsupported::later};
 
-use error::Fault;
 use moldwarp::particles::SeedingError;
 use moldwarp::step::TimeStepError;
 use moldwarp::{Plan, SetupError};
@@ -134,6 +135,15 @@ fn above_stable(error: &SetupError, place: &Range<usize>) -> Fault {
 /// keys and names, wrong units, values out of range, keys that exclude each other, a mesh that
 /// does not fit.
 pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
+    load_varied(path, sets, &[])
+}
+
+/// The same with one value of each `--vary PATH=…` of a sweep, `PATH=VALUE`, on top.
+///
+/// # Errors
+///
+/// As for [`load`]; messages name `--vary`.
+pub fn load_varied(path: &Path, sets: &[String], varied: &[String]) -> Result<Scene, SceneError> {
     let file = match path.is_dir() {
         true => path.join("scene.toml"),
         false => path.to_owned(),
@@ -143,11 +153,14 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Scene, SceneError> {
         return Err(not_a_scene(&file));
     }
     let original = std::fs::read_to_string(&file).map_err(|e| unreadable(&name, path, &e))?;
-    let (text, overrides) =
-        overrides::apply(&original, sets).map_err(|fault| fault.in_file(&name, &original))?;
-    if !overrides.is_empty() {
-        name += " with --set";
-    }
+    let (text, overrides) = overrides::apply(&original, sets, varied)
+        .map_err(|fault| fault.in_file(&name, &original))?;
+    name += match (sets.is_empty(), varied.is_empty()) {
+        (true, true) => "",
+        (false, true) => " with --set",
+        (true, false) => " with --vary",
+        (false, false) => " with --set and --vary",
+    };
     let folder = match file.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),

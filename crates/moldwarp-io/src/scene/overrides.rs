@@ -1,4 +1,5 @@
-//! `--set PATH=VALUE`: changes to the scene's text before it is read.
+//! `--set PATH=VALUE`: changes to the scene's text before it is read. A sweep's `--vary` makes the
+//! same changes, one value at a time; messages name the option that the user wrote.
 //!
 //! The text itself is edited, so that everything after sees one text, errors point into it and
 //! it can be stored as the scene that was run.
@@ -12,10 +13,10 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 use toml_edit::{DocumentMut, Item, Key, Value};
 
-/// One `--set`, applied.
+/// One `--set`, or one value of a `--vary`, applied.
 #[derive(Debug)]
 pub(super) struct Override {
-    /// As the user wrote it.
+    /// As the user wrote it, with the option.
     entry: String,
     path: Vec<String>,
     /// How many keys of the path were there before.
@@ -27,23 +28,30 @@ const NAMED: [&str; 3] = ["materials", "bodies", "probes"];
 /// Lists: nothing is added to them by `--set`.
 const LISTS: [&str; 4] = ["boundaries", "loads", "stages", "compare"];
 
-/// The text with all entries applied in their order.
-pub(super) fn apply(text: &str, sets: &[String]) -> Result<(String, Vec<Override>), Fault> {
-    if sets.is_empty() {
+/// The text with all entries applied in their order, those that are varied last.
+pub(super) fn apply(
+    text: &str,
+    sets: &[String],
+    varied: &[String],
+) -> Result<(String, Vec<Override>), Fault> {
+    if sets.is_empty() && varied.is_empty() {
         return Ok((text.to_owned(), Vec::new()));
     }
     syntax::table(text)?;
     let mut document = DocumentMut::from_str(text)
         .map_err(|e| Fault::new(format!("the scene is not valid TOML: {}", e.message())))?;
     let mut done = Vec::new();
-    for entry in sets {
-        done.push(set(document.as_item_mut(), entry)?);
+    let sets = sets.iter().map(|entry| ("--set", entry));
+    let varied = varied.iter().map(|entry| ("--vary", entry));
+    for (option, entry) in sets.chain(varied) {
+        done.push(set(document.as_item_mut(), option, entry)?);
     }
     Ok((document.to_string(), done))
 }
 
-fn set(root: &mut Item, entry: &str) -> Result<Override, Fault> {
+fn set(root: &mut Item, option: &str, entry: &str) -> Result<Override, Fault> {
     let (path, value) = split(entry)?;
+    let entry = &format!("{option} {entry}");
     let mut node = Node::Item(root);
     let mut known = path.len();
     for (depth, key) in path[..path.len() - 1].iter().enumerate() {
@@ -76,21 +84,33 @@ fn set(root: &mut Item, entry: &str) -> Result<Override, Fault> {
     })
 }
 
-/// The path's keys and the value: TOML if it is, else a text.
+/// The path's keys and the value.
 fn split(entry: &str) -> Result<(Vec<String>, Value), Fault> {
     let how = "write --set PATH=VALUE, for example --set numerics.courant=0.4";
-    let (path, value) = entry
+    let (path, text) = entry
         .split_once('=')
         .ok_or_else(|| Fault::new(format!("`--set {entry}` has no `=`")).help(how))?;
-    let keys = Key::parse(path.trim()).map_err(|_| {
-        Fault::new(format!("`--set {entry}`: `{path}` is not a path of keys")).help(format!(
-            "{how}; keys with other signs than letters, digits, `-` and `_` stand in quotes"
-        ))
-    })?;
-    let keys = keys.iter().map(|k| k.get().to_owned()).collect();
-    let value = value.trim();
-    let parsed = Value::from_str(value).unwrap_or_else(|_| Value::from(value));
-    Ok((keys, parsed))
+    let keys = keys(path).ok_or_else(|| no_path(&format!("--set {entry}"), path, how))?;
+    Ok((keys, value(text)))
+}
+
+/// The keys of a path; none if it is no path.
+pub(crate) fn keys(path: &str) -> Option<Vec<String>> {
+    let keys = Key::parse(path.trim()).ok()?;
+    Some(keys.iter().map(|k| k.get().to_owned()).collect())
+}
+
+/// What a user who wrote something else for a path should know.
+pub(crate) fn no_path(entry: &str, path: &str, how: &str) -> Fault {
+    Fault::new(format!("`{entry}`: `{path}` is not a path of keys")).help(format!(
+        "{how}; keys with other signs than letters, digits, `-` and `_` stand in quotes"
+    ))
+}
+
+/// TOML if it is, else a text.
+pub(crate) fn value(text: &str) -> Value {
+    let text = text.trim();
+    Value::from_str(text).unwrap_or_else(|_| Value::from(text))
 }
 
 /// Optional tables may be left out of a scene, and be set all the same.
@@ -105,7 +125,7 @@ fn no_such_path(entry: &str, path: &[String], depth: usize, node: &Node) -> Faul
     let missing = &path[depth];
     let there = path[..depth].join(".");
     let wrong = path[..=depth].join(".");
-    let fault = Fault::new(format!("`--set {entry}`: the scene has no `{wrong}`"));
+    let fault = Fault::new(format!("`{entry}`: the scene has no `{wrong}`"));
     let join = |name: &str| {
         let mut keys = path.to_vec();
         keys[depth] = name.to_owned();
@@ -131,10 +151,8 @@ fn no_such_path(entry: &str, path: &[String], depth: usize, node: &Node) -> Faul
 }
 
 fn not_settable(entry: &str) -> Fault {
-    Fault::new(format!(
-        "`--set {entry}`: there is nothing to set in this place"
-    ))
-    .help("set one key of a table, or one whole value")
+    Fault::new(format!("`{entry}`: there is nothing to set in this place"))
+        .help("set one key of a table, or one whole value")
 }
 
 /// If the fault lies in something that was set, says so, and for a wrong key which path was
@@ -155,7 +173,7 @@ pub(super) fn blame(mut fault: Fault, text: &str, overrides: &[Override]) -> Fau
     let Some((set, depth)) = guilty else {
         return fault;
     };
-    fault.message = format!("`--set {}`: {}", set.entry, fault.message);
+    fault.message = format!("`{}`: {}", set.entry, fault.message);
     if let (Some(meant), Some(depth)) = (&fault.meant, depth) {
         let mut path = set.path.clone();
         path[depth] = meant.clone();

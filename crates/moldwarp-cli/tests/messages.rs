@@ -183,6 +183,7 @@ fn ground(title: &str, old: &str, new: &str) -> String {
     let column = replaced("particles_per_element = 4", "k0 = 0.5")
         .replace("\"0 m/s2\"]", "\"-9.81 m/s2\"]")
         .replace("cells = [1, 1, 5]", "cells = [2, 2, 5]")
+        .replace("surface = \"z-max\"", "surface = \"z-min\"")
         .replace(
             "[probes.bottom]",
             "[initial_stress]\nkind = \"k0\"\n\n[probes.bottom]",
@@ -195,7 +196,7 @@ fn ground(title: &str, old: &str, new: &str) -> String {
 #[test]
 fn initial_stress() {
     let sand = "model = \"mohr-coulomb\"\ncohesion = 0\nfriction_angle = \"15 deg\"";
-    let slope = "region = { kind = \"half-space\", point = [0, 0, \"0.2 m\"], normal = [1, 0, 1] }";
+    let slope = "region = { kind = \"half-space\", point = [0, 0, \"0.2 m\"], normal = [1, 0, 5] }";
     let low = "region = { min = [0, 0, 0], max = [\"0.05 m\", \"0.1 m\", \"0.5 m\"] }";
     let lines = [
         ground("K0 without gravity", "\"-9.81 m/s2\"]", "0]"),

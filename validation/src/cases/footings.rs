@@ -2,13 +2,13 @@
 //!
 //! Prandtl's bearing capacity of a strip is (2 + π) c_u = 5.1416 c_u over the width B, that of a
 //! circle 6.05 c_u (Eason and Shield 1960). Half the strip is computed in plane strain, of the circle
-//! a sector of 20°: the mesh nodes under it move down at a speed that rises to 3e-4 of
-//! the shear wave's, with local damping 0.5, until the settlement is 0.16 % of B. The soil is stiff
-//! (G = 3000 c_u), so that it fails before particles cross elements: the nodes of the footing stay
-//! where they are while the soil goes down, and grains that rose beside its edge into elements above
-//! would stick to it. It is nearly incompressible (ν = 0.49) and takes any tension. Elements are
-//! cubes of h = B/(2n) near the footing, n over its half width; away from it they grow. The motion
-//! under the footing fades over the element beside it, so that it acts half an element wider (a circle as a polygon of 18 sides).
+//! a sector of 20°: the mesh nodes under it move down slowly, with local damping 0.5, until a small
+//! share of B. The soil is stiff for its strength, so that it fails before particles cross elements:
+//! the nodes of the footing stay where they are while the soil goes down, and the row of elements
+//! under it would lose particles. It is nearly incompressible (ν = 0.49) and takes any tension.
+//! Elements are cubes of h = B/(2n) near the footing, n over its half width; away from it they grow.
+//! The motion under the footing fades over the element beside it, so that it acts half an element
+//! wider (a circle as a polygon of 18 sides).
 
 use crate::setup::{self, growing};
 use crate::{Fidelity, Plot, Report, Table};
@@ -17,14 +17,31 @@ use moldwarp::mesh::{CylinderSector, Split};
 use moldwarp::plan::{BoundaryKind, Place, Quantity, Region, Smoothing};
 use moldwarp::{Mesh, Vec3};
 
-/// Undrained shear strength, Pa, shear modulus, Pa, and half width, m.
+/// Undrained shear strength, Pa, and half width, m.
 const STRENGTH: f64 = 1e3;
-const SHEAR: f64 = 3e3 * STRENGTH;
 const HALF: f64 = 1.0;
 const DENSITY: f64 = 2000.0;
 const POISSON: f64 = 0.49;
-/// Settlement over B = 2 m at the end.
-const SETTLEMENT: f64 = 0.0016;
+
+/// How a footing is pushed: G over c_u, speed over that of the shear wave, settlement over B = 2 m
+/// at the end. Particles under it cross elements at 0.138 h.
+#[derive(Clone, Copy)]
+struct Push {
+    stiffness: f64,
+    speed: f64,
+    settlement: f64,
+}
+
+const ON_STRIP: Push = Push {
+    stiffness: 4e3,
+    speed: 2e-4,
+    settlement: 0.0013,
+};
+const ON_CIRCLE: Push = Push {
+    stiffness: 3e3,
+    speed: 3e-4,
+    settlement: 0.0016,
+};
 
 /// Bearing capacities over c_u.
 const STRIP: f64 = 2.0 + std::f64::consts::PI;
@@ -101,17 +118,18 @@ fn circle(n: usize) -> Ground {
 }
 
 /// (settlement over B, mean stress over c_u) of a footing that is pushed down.
-fn press(ground: Ground, sides: &[&str], smoothing: Smoothing) -> Vec<(f64, f64)> {
+fn press(ground: Ground, push: Push, sides: &[&str], smoothing: Smoothing) -> Vec<(f64, f64)> {
+    let shear = push.stiffness * STRENGTH;
     let soil = setup::mohr_coulomb(
-        (2.0 * SHEAR * (1.0 + POISSON), POISSON),
+        (2.0 * shear * (1.0 + POISSON), POISSON),
         STRENGTH,
         0.0,
         Some(1e3 * STRENGTH),
         DENSITY,
     );
-    let speed = 3e-4 * (SHEAR / DENSITY).sqrt();
-    let ramp = 0.1 * SETTLEMENT * 2.0 * HALF / speed;
-    let end = SETTLEMENT * 2.0 * HALF / speed + 0.5 * ramp;
+    let speed = push.speed * (shear / DENSITY).sqrt();
+    let ramp = 0.1 * push.settlement * 2.0 * HALF / speed;
+    let end = push.settlement * 2.0 * HALF / speed + 0.5 * ramp;
     let mut plan = setup::free_body(ground.mesh, soil, end);
     let [min, max] = ground.corners;
     plan.bodies[0].place = Place::Region(Region::Box { min, max });
@@ -142,25 +160,38 @@ fn press(ground: Ground, sides: &[&str], smoothing: Smoothing) -> Vec<(f64, f64)
 
 /// A strip footing, with and without smoothing.
 pub fn run_strip(fidelity: Fidelity) -> Report {
-    let smoothed = fidelity.pick(vec![4, 8], vec![6, 12, 24, 48]);
+    let smoothed = fidelity.pick(vec![4, 8], vec![6, 12, 24, 32]);
     let plain = fidelity.pick(vec![4, 8], vec![6, 12, 24]);
-    let mut footing = Footing::new("Rigid strip footing on Tresca soil", STRIP, "2 + π");
+    let mut footing = Footing::new(
+        "Rigid strip footing on Tresca soil",
+        ON_STRIP,
+        STRIP,
+        "2 + π",
+    );
     for &n in &smoothed {
-        footing.smoothed(n, press(strip(n), &setup::SIDES, Smoothing::Strain));
+        footing.smoothed(
+            n,
+            press(strip(n), ON_STRIP, &setup::SIDES, Smoothing::Strain),
+        );
     }
     footing.limit(fidelity.pick(0.12, 0.05));
     for &n in &plain {
-        footing.plain(n, press(strip(n), &setup::SIDES, Smoothing::Off));
+        footing.plain(n, press(strip(n), ON_STRIP, &setup::SIDES, Smoothing::Off));
     }
     footing.finish("strip-footing")
 }
 
 /// A circular footing, with smoothing.
 pub fn run_circle(fidelity: Fidelity) -> Report {
-    let mut footing = Footing::new("Rigid circular footing on Tresca soil", CIRCLE, "6.05");
+    let mut footing = Footing::new(
+        "Rigid circular footing on Tresca soil",
+        ON_CIRCLE,
+        CIRCLE,
+        "6.05",
+    );
     for n in fidelity.pick(vec![3, 6], vec![6, 12, 24]) {
         let sides = ["theta-min", "theta-max", "r-max"];
-        footing.smoothed(n, press(circle(n), &sides, Smoothing::Strain));
+        footing.smoothed(n, press(circle(n), ON_CIRCLE, &sides, Smoothing::Strain));
     }
     footing.limit(fidelity.pick(0.25, 0.1));
     footing.finish("circular-footing")
@@ -168,6 +199,7 @@ pub fn run_circle(fidelity: Fidelity) -> Report {
 
 /// What is made of the load curves.
 struct Footing {
+    settlement: f64,
     report: Report,
     plot: Plot,
     exact: f64,
@@ -177,7 +209,7 @@ struct Footing {
 }
 
 impl Footing {
-    fn new(title: &str, exact: f64, label: &'static str) -> Footing {
+    fn new(title: &str, push: Push, exact: f64, label: &'static str) -> Footing {
         let columns = [
             "elements",
             "smoothing",
@@ -186,6 +218,7 @@ impl Footing {
             "last_rise_%",
         ];
         Footing {
+            settlement: push.settlement,
             report: Report {
                 table: Table::new(&columns),
                 ..Report::default()
@@ -199,7 +232,9 @@ impl Footing {
 
     /// Error at the end, and the rise of the load before.
     fn row(&mut self, n: usize, name: &str, curve: Vec<(f64, f64)>) -> (f64, f64) {
-        let (end, before) = (mean(&curve, 0.9, 1.1), mean(&curve, 0.7, 0.9));
+        let mean =
+            |from: f64, to: f64| mean(&curve, [from, to].map(|share| share * self.settlement));
+        let (end, before) = (mean(0.9, 1.1), mean(0.7, 0.9));
         let (error, rise) = (end / self.exact - 1.0, end / before - 1.0);
         self.report.table.row(&[
             &n,
@@ -240,18 +275,16 @@ impl Footing {
     }
 
     fn finish(mut self, file: &str) -> Report {
-        let ends = [(0.0, self.exact), (SETTLEMENT, self.exact)];
+        let ends = [(0.0, self.exact), (self.settlement, self.exact)];
         self.plot.dashed(self.label, ends.to_vec());
         self.report.plots.push((file.to_owned(), self.plot));
         self.report
     }
 }
 
-/// Mean load between two settlements, as shares of the last.
-fn mean(curve: &[(f64, f64)], from: f64, to: f64) -> f64 {
-    let part = curve
-        .iter()
-        .filter(|p| p.0 >= from * SETTLEMENT && p.0 <= to * SETTLEMENT);
+/// Mean load between two settlements.
+fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
+    let part = curve.iter().filter(|p| p.0 >= from && p.0 <= to);
     let values: Vec<f64> = part.map(|p| p.1).collect();
     values.iter().sum::<f64>() / values.len() as f64
 }

@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::args::PartArgs;
-use crate::exit::Exit;
+use crate::exit::{Exit, of_stop};
 use crate::run::{load, options};
 use moldwarp_io::output::hash::scene_hash;
 use moldwarp_io::run::run as compute;
@@ -29,7 +29,7 @@ fn run(args: &PartArgs) -> Result<Exit, Failure> {
     let outcome = compute(scene, &options(&args.run, threads), &mut ())?;
     match outcome.stopped {
         None => Ok(Exit::Done),
-        Some(stop) => Err(Failure::new(Exit::Guard, miette::miette!("{stop}"))),
+        Some(stop) => Err(Failure::new(of_stop(&stop), miette::miette!("{stop}"))),
     }
 }
 

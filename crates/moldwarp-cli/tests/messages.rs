@@ -183,7 +183,7 @@ fn ground(title: &str, old: &str, new: &str) -> String {
     let column = replaced("particles_per_element = 4", "k0 = 0.5")
         .replace("\"0 m/s2\"]", "\"-9.81 m/s2\"]")
         .replace("cells = [1, 1, 5]", "cells = [2, 2, 5]")
-        .replace("surface = \"z-max\"", "surface = \"z-min\"")
+        .replace("surface = \"z-max\"", "surface = \"x-min\"")
         .replace(
             "[probes.bottom]",
             "[initial_stress]\nkind = \"k0\"\n\n[probes.bottom]",

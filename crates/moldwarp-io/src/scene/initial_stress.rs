@@ -62,7 +62,9 @@ pub(super) fn explain(error: &InitialStressError, place: Range<usize>) -> Fault 
              loading: no initial stress, and a first stage with damping until = \"equilibrium\""
         }
         InitialStressError::NotOnFaces { .. } => {
-            "let the mesh follow the layers, with a volume for each"
+            "let the mesh follow the layers, with a volume for each; under a surface that slopes use \
+             gravity loading: no initial stress, and a first stage with damping until = \
+             \"equilibrium\""
         }
         InitialStressError::Yields { .. } => {
             "K0 must lie between the active and the passive coefficient of earth pressure, \

@@ -197,11 +197,13 @@ fn ground(title: &str, old: &str, new: &str) -> String {
 fn initial_stress() {
     let sand = "model = \"mohr-coulomb\"\ncohesion = 0\nfriction_angle = \"15 deg\"";
     let slope = "region = { kind = \"half-space\", point = [0, 0, \"0.2 m\"], normal = [1, 0, 5] }";
-    let low = "region = { min = [0, 0, 0], max = [\"0.05 m\", \"0.1 m\", \"0.5 m\"] }";
+    let step = "region = { min = [0, 0, 0], max = [\"0.05 m\", \"0.1 m\", \"0.5 m\"] }\n\
+                material = \"soil\"\nk0 = 0.5\n[bodies.low]\n\
+                region = { min = [\"0.05 m\", 0, 0], max = [\"0.1 m\", \"0.1 m\", \"0.3 m\"] }";
     let lines = [
         ground("K0 without gravity", "\"-9.81 m/s2\"]", "0]"),
         ground("K0 under a slope", "volume = \"box\"", slope),
-        ground("K0 beside a step", "volume = \"box\"", low),
+        ground("K0 beside a step", "volume = \"box\"", step),
         ground("K0 beyond the strength", "model = \"linear-elastic\"", sand),
     ];
     insta::assert_snapshot!(lines.join("\n"));

@@ -236,13 +236,6 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         if !bodies.iter().any(|b| b.material == m) {
             notes.push(format!("no body is made of material `{}`", material.name));
         }
-        if matches!(material.model, moldwarp::Material::MohrCoulomb(_)) {
-            notes.push(format!(
-                "material `{}`: Mohr-Coulomb is proved at stress points, not yet in flows, where \
-                 thin fronts gain energy; judge by the numerical terms at the end",
-                material.name
-            ));
-        }
     }
     Ok(Scene {
         plan: Plan {

@@ -9,6 +9,7 @@ use crate::mesh::Follower;
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{InitialStressError, Order, Particles, SeedingError, seed};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
+use crate::stages::moduli;
 use crate::step::{Active, CellForce, CellStrain, CellSums, Node, TimeStepError};
 use crate::switches::Switches;
 
@@ -144,14 +145,7 @@ impl Simulation {
         let elasticity = plan
             .bodies
             .iter()
-            .map(|body| {
-                let elastic = plan.materials[body.material].model.elasticity();
-                [
-                    elastic.lame(),
-                    elastic.shear_modulus(),
-                    elastic.constrained_modulus(),
-                ]
-            })
+            .map(|body| moduli(&plan.materials[body.material].model))
             .collect();
         let mut simulation = Simulation {
             gravity: plan.gravity,

@@ -1,6 +1,7 @@
 //! How stages begin and end.
 
 use crate::boundary::{Absorbing, Constraints};
+use crate::material::Material;
 use crate::measure::Watch;
 use crate::mesh::{Face, Follower};
 use crate::plan::{Boundary, BoundaryKind, Plan, Until};
@@ -16,6 +17,10 @@ impl Simulation {
         let first = self.clock.stage == 0;
         let stage = &self.plan.stages[self.clock.stage];
         let switched = self.switches.begin(stage, self.clock.time);
+        for &(body, material) in &stage.materials {
+            self.plan.bodies[body].material = material;
+            self.elasticity[body] = moduli(&self.plan.materials[material].model);
+        }
         let (reset, gives) = (
             stage.reset_displacement,
             !stage.initial_velocities.is_empty(),
@@ -138,6 +143,16 @@ impl Simulation {
             .damping
             .unwrap_or(self.plan.numerics.damping)
     }
+}
+
+/// λ, G and E_c, Pa.
+pub(crate) fn moduli(model: &Material) -> [f64; 3] {
+    let elastic = model.elasticity();
+    [
+        elastic.lame(),
+        elastic.shear_modulus(),
+        elastic.constrained_modulus(),
+    ]
 }
 
 fn absorbing(sim: &Simulation, boundaries: &[&Boundary]) -> Absorbing {

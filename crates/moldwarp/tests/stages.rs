@@ -245,3 +245,53 @@ fn no_equilibrium_within_the_limit_stops_the_run() {
         "{stop}"
     );
 }
+
+/// At rest on rollers with K₀ = ν/(1 − ν) of its material, ground that becomes half as stiff stays:
+/// stresses do not change, only what further strain does to them. With less strength it yields.
+#[test]
+fn a_body_becomes_another_material() {
+    let mut plan = ground(BoundaryKind::Roller);
+    plan.boundaries[0].surfaces.remove(1);
+    let elastic = LinearElastic {
+        young_modulus: 1e7,
+        poisson_ratio: 0.3,
+    };
+    for (name, cohesion) in [("strong", 1e5), ("weak", 1e2)] {
+        let parameters = moldwarp::material::MohrCoulombParameters {
+            cohesion,
+            friction_angle: 0.3,
+            dilation_angle: 0.0,
+            tension_cutoff: None,
+        };
+        let soil = moldwarp::material::MohrCoulomb::new(elastic, parameters).unwrap();
+        plan.materials.push(NamedMaterial {
+            name: name.into(),
+            density: 1600.0,
+            model: Material::MohrCoulomb(soil),
+        });
+    }
+    plan.bodies.truncate(1);
+    plan.bodies[0] = layer("clay", 2, 0.0, 3.0);
+    plan.initial_stress = None;
+    let judged = Equilibrium::default();
+    plan.stages = vec![
+        Stage {
+            damping: Some(0.7),
+            ..Stage::new("strong", Until::Equilibrium { limit: 5.0, judged })
+        },
+        Stage {
+            materials: vec![(0, 3)],
+            reset_displacement: true,
+            ..Stage::new("weak", Until::Duration(0.1))
+        },
+    ];
+    let room = plan.mesh.surface("x-max").unwrap();
+    plan.boundaries[0].surfaces.retain(|&s| s != room);
+    let sim = run(plan);
+    assert!(
+        greatest_displacement(&sim) > 1e-4,
+        "{}",
+        greatest_displacement(&sim)
+    );
+    assert!(sim.energies().plastic > 0.0);
+}

@@ -225,6 +225,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     let probes = probes::probes(&raw.probes, &mesh, &bodies, &boundaries, &mut notes)?;
     let named = stages::Named {
         bodies: &bodies,
+        materials: &materials,
         boundaries: &boundaries,
         loads: &loads,
     };
@@ -233,7 +234,8 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     let initial_stress = initial_stress::initial_stress(raw.initial_stress.as_ref(), raw_bodies)?;
     let compare = output::compare(&raw.compare, &probes, &folder)?;
     for (m, material) in materials.iter().enumerate() {
-        if !bodies.iter().any(|b| b.material == m) {
+        let later = stages.iter().flat_map(|s| &s.materials).any(|c| c.1 == m);
+        if !later && !bodies.iter().any(|b| b.material == m) {
             notes.push(format!("no body is made of material `{}`", material.name));
         }
     }

@@ -495,6 +495,12 @@ pub(super) struct RawStage {
     /// default: –
     pub steps: Option<Spanned<i64>>,
     pub equilibrium: Option<Spanned<RawEquilibrium>>,
+    /// Another material for the body of this name from the stage's beginning, of the same density.
+    /// Stresses stay, and are returned to the new strength in the first step.
+    /// type: name
+    /// default: none
+    #[serde(default)]
+    pub material: Named<Text>,
     /// Boundaries and loads, by name, that are switched on when the stage begins. What no earlier
     /// stage has switched off is off until then.
     /// type: name or list of names

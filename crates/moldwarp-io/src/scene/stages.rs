@@ -9,12 +9,15 @@ use super::values::{
     amount, amount_at, choose, count, damping, exactly_one, find, placed, positive, required, span,
     vector,
 };
-use moldwarp::plan::{Body, Boundary, Equilibrium, Item, Level, Load, Ramp, Stage, Until};
+use moldwarp::plan::{
+    Body, Boundary, Equilibrium, Item, Level, Load, NamedMaterial, Ramp, Stage, Until,
+};
 use std::ops::Range;
 
 /// What stages can name.
 pub(super) struct Named<'a> {
     pub bodies: &'a [Body],
+    pub materials: &'a [NamedMaterial],
     pub boundaries: &'a [Boundary],
     pub loads: &'a [Load],
 }
@@ -52,6 +55,25 @@ fn stage(raw: &RawStage, named: &Named, switched: &mut Vec<(Item, bool)>) -> Res
             vector("initial_velocity", velocity, Dimension::Velocity)?,
         ));
     }
+    let mut materials = Vec::new();
+    for (body, material) in &raw.material.0 {
+        let names = named.bodies.iter().map(|b| b.name.as_str());
+        let place = find(placed(body), "body", "bodies", names)?;
+        let names = named.materials.iter().map(|m| m.name.as_str());
+        let other = find(placed(material), "material", "materials", names)?;
+        let [before, after] =
+            [named.bodies[place].material, other].map(|m| named.materials[m].density);
+        if before != after {
+            return Err(Fault::new(format!(
+                "material `{}` has another density than body `{}`, whose mass stays",
+                material.get_ref(),
+                body.get_ref()
+            ))
+            .at(material.span(), format!("{after} kg/m³, not {before}"))
+            .help("give both materials the same density or unit weight"));
+        }
+        materials.push((place, other));
+    }
     let off = items(raw.off.as_ref(), false, named, switched)?;
     let on = items(raw.on.as_ref(), true, named, switched)?;
     if let Some(reset) = &raw.reset {
@@ -64,6 +86,7 @@ fn stage(raw: &RawStage, named: &Named, switched: &mut Vec<(Item, bool)>) -> Res
         until: until(raw)?,
         damping: raw.damping.as_ref().map(damping).transpose()?,
         initial_velocities,
+        materials,
         on,
         off,
         levels: levels(raw, named)?,

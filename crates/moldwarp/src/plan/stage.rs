@@ -12,6 +12,9 @@ pub struct Stage {
     pub damping: Option<f64>,
     /// Velocities given to whole bodies when the stage begins, m/s.
     pub initial_velocities: Vec<(usize, Vec3)>,
+    /// Bodies that are of another material from the stage's beginning: indices into [`Plan::bodies`]
+    /// and [`Plan::materials`]. Mass, stress and state stay.
+    pub materials: Vec<(usize, usize)>,
     /// Switched on when the stage begins. What a stage switches on without an earlier one having
     /// switched it off is off from the start.
     pub on: Vec<Item>,
@@ -87,6 +90,7 @@ impl Stage {
             until,
             damping: None,
             initial_velocities: Vec::new(),
+            materials: Vec::new(),
             on: Vec::new(),
             off: Vec::new(),
             levels: Vec::new(),

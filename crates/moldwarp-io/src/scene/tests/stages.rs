@@ -117,6 +117,19 @@ fn stages_and_initial_stress() {
             "name = \"a\"\nduration = \"1 s\"\nscale = { gravity = { to = 1 } }",
         ),
         case(
+            "another material for nothing",
+            "name = \"a\"\nduration = \"1 s\"\nmaterial.layers = \"soil\"",
+        ),
+        entry(
+            "a material of another density",
+            &stages("name = \"a\"\nduration = \"1 s\"\nmaterial.layer = \"mud\"").replace(
+                "[bodies.layer]",
+                "[materials.mud]\nmodel = \"linear-elastic\"\nyoung_modulus = \"1 MPa\"\n\
+                 poisson_ratio = 0\ndensity = 1500\n\n[bodies.layer]",
+            ),
+            &[],
+        ),
+        case(
             "reset of the time",
             "name = \"a\"\nduration = \"1 s\"\nreset = [\"time\"]",
         ),

@@ -29,4 +29,7 @@ coarse! {
     mass_matrix = "mass-matrix",
     rotation = "rotation",
     shear_wave = "shear-wave",
+    thick_cylinder = "thick-cylinder",
+    heap = "heap",
+    collapse_smoothing = "collapse-smoothing",
 }

@@ -1,19 +1,22 @@
 //! The cases, one file each.
 
 mod absorbing_column;
+mod collapse_smoothing;
 mod first_mode;
 mod gravity_column;
+mod heap;
 mod mass_matrix;
 mod oedometer;
 mod rotation;
 mod sensitivity;
 mod shear_wave;
 mod strip_footing;
+mod thick_cylinder;
 
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 9] = [
+pub const ALL: [Case; 12] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -58,6 +61,21 @@ pub const ALL: [Case; 9] = [
         name: "strip-footing",
         title: "Bearing capacity of a strip footing on clay",
         run: strip_footing::run,
+    },
+    Case {
+        name: "thick-cylinder",
+        title: "A thick-walled cylinder under internal pressure, as a sector",
+        run: thick_cylinder::run,
+    },
+    Case {
+        name: "heap",
+        title: "A heap of sand that stays, and a steeper one that does not",
+        run: heap::run,
+    },
+    Case {
+        name: "collapse-smoothing",
+        title: "A collapsing block of sand with each smoothing of strains",
+        run: collapse_smoothing::run,
     },
 ];
 

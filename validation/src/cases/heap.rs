@@ -82,11 +82,11 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
     let balance = setup::run(plan(slope, n), |s| {
         let p = s.particles();
         let scale = p.total_mass() * GRAVITY * HEIGHT;
-        let places = p.places_by_id();
-        if s.stage() == 0 {
-            o.motion[0] = s.energies().kinetic_grid / scale;
+        o.motion[s.stage().min(1)] = s.energies().kinetic_grid / scale;
+        if s.stage() == 0 || !(rest.is_none() || s.steps() % 20 == 0 || s.finished()) {
             return;
         }
+        let places = p.places_by_id();
         let start = rest.get_or_insert_with(|| {
             o.settled = p
                 .displacement
@@ -96,15 +96,12 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
                 / HEIGHT;
             places.iter().map(|&i| p.position[i as usize]).collect()
         });
-        if s.steps() % 20 == 0 || s.finished() {
-            let moved = |id: usize| (p.position[places[id] as usize] - start[id]).length();
-            let far = (0..start.len()).max_by(|&a, &b| moved(a).total_cmp(&moved(b)));
-            let far = far.expect("a heap has particles");
-            if moved(far) / HEIGHT > o.moved {
-                (o.moved, o.place) = (moved(far) / HEIGHT, start[far]);
-            }
+        let moved = |id: usize| (p.position[places[id] as usize] - start[id]).length();
+        let far = (0..start.len()).max_by(|&a, &b| moved(a).total_cmp(&moved(b)));
+        let far = far.expect("a heap has particles");
+        if moved(far) / HEIGHT > o.moved {
+            (o.moved, o.place) = (moved(far) / HEIGHT, start[far]);
         }
-        o.motion[1] = s.energies().kinetic_grid / scale;
         if s.finished() {
             (o.slope, o.surface) = surface(s, HEIGHT / n as f64);
             let far = |of: &[Vec3]| of.iter().map(|x| x.x).fold(0.0, f64::max);

@@ -266,3 +266,8 @@ pub fn mohr_coulomb(
         model: Material::MohrCoulomb(model),
     }
 }
+
+/// Dry sand: 5 MPa, ν = 0.3, φ = 30°, neither cohesion nor dilation, 1600 kg/m³.
+pub fn sand() -> NamedMaterial {
+    mohr_coulomb((5e6, 0.3), 0.0, 30.0, None, 1600.0)
+}

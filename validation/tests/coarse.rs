@@ -32,4 +32,7 @@ coarse! {
     strip_footing = "strip-footing",
     circular_footing = "circular-footing",
     column_collapse = "column-collapse",
+    thick_cylinder = "thick-cylinder",
+    heap = "heap",
+    collapse_smoothing = "collapse-smoothing",
 }

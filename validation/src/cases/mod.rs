@@ -1,20 +1,23 @@
 //! The cases, one file each.
 
 mod absorbing_column;
+mod collapse_smoothing;
 mod column_collapse;
 mod first_mode;
 mod footings;
 mod gravity_column;
+mod heap;
 mod mass_matrix;
 mod oedometer;
 mod rotation;
 mod sensitivity;
 mod shear_wave;
+mod thick_cylinder;
 
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 11] = [
+pub const ALL: [Case; 14] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -69,6 +72,21 @@ pub const ALL: [Case; 11] = [
         name: "column-collapse",
         title: "A cylinder of dry sand collapses",
         run: column_collapse::run,
+    },
+    Case {
+        name: "thick-cylinder",
+        title: "A thick-walled cylinder under internal pressure, as a sector",
+        run: thick_cylinder::run,
+    },
+    Case {
+        name: "heap",
+        title: "A heap of sand that stays, and a steeper one that does not",
+        run: heap::run,
+    },
+    Case {
+        name: "collapse-smoothing",
+        title: "A collapsing block of sand with each smoothing of strains",
+        run: collapse_smoothing::run,
     },
 ];
 

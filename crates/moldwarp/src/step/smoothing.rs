@@ -18,9 +18,9 @@
 //!   P̂_e = w_e Σ_n q_n,   q_n = ¼ Σ_e P_e / W_n,
 //!
 //! do Σ P̂_e θ_e = Σ P_e θ̄_e: nothing is lost. But then neither forces nor strains know of a
-//! pressure that alternates from cell to cell. Elastic material never makes one; plastic flow
-//! does, up to the apex, where it opens, and frictional soil becomes too weak however fine the
-//! mesh. It is offered for comparison and is not the default.
+//! pressure that alternates from cell to cell. Elastic material never makes one; plastic flow does,
+//! and frictional soil becomes too weak, the more the finer the mesh (validation case
+//! `collapse-smoothing`). It is offered for comparison and is not the default.
 
 use super::{BLOCK, CellForce, CellSums, Node};
 use crate::parallel::fold;

@@ -140,7 +140,7 @@ pub fn run(fidelity: Fidelity) -> Report {
         "distance from the axis over r₀",
         "height over r₀",
     );
-    for a in fidelity.pick(vec![1.0, 2.0], vec![0.5, 1.0, 2.0]) {
+    for a in fidelity.pick(vec![1.0], vec![0.5, 1.0, 2.0]) {
         let unit = (a / GRAVITY).sqrt();
         for n in fidelity.pick(vec![6, 8], vec![12, 24]) {
             let mut curve = Vec::new();

@@ -49,6 +49,7 @@ fn plan(split: Split, mass: MassMatrix) -> Plan {
         }],
         loads: vec![],
         probes: vec![],
+        initial_stress: None,
         numerics: Numerics {
             mass,
             ..Numerics::default()

@@ -8,7 +8,7 @@
 
 --frame counts from 0, or from the end if negative; --time takes the frame nearest to it.
 Components are x y z or `norm` of vectors, xx yy zz xy yz zx of stresses. --range fixes the colours'
-ends, for pictures that are to be compared.
+ends, for pictures that are to be compared. --flat --size 1400 560 is for sections in plane strain.
 """
 
 import argparse
@@ -167,6 +167,37 @@ def render(args):
         specular=0.1,
         show_scalar_bar=False,
     )
+    if args.flat:
+        plotter.add_scalar_bar(
+            title=f"{name} ({unit_name}), t = {time:.3g} s\n ", position_x=0.25, position_y=0.04,
+            width=0.5, height=0.12, title_font_size=24, label_font_size=20, n_labels=steps + 1,
+            fmt="%.4g", color="#20242b",
+        )
+        look_along_y(plotter, bounds, width, height)
+    else:
+        bar_beside(plotter, title, steps, f"t = {time:.3g} s", width, height)
+        look_from_the_side(plotter, bounds, width, height)
+    plotter.screenshot(args.output)
+    print(f"{args.output}: {name} at t = {time:g} s, "
+          f"{shown.min():.4g} to {shown.max():.4g} {unit_name}")
+
+
+def look_along_y(plotter, bounds, width, height):
+    """Puts a section in plane strain in view, with room for the bar below."""
+    low, high = np.array(bounds[0::2]), np.array(bounds[1::2])
+    centre, size = 0.5 * (low + high), high - low
+    scale = max(0.5 * size[0] * height / width, 0.5 * size[2] / 0.75) * 1.05
+    camera = plotter.camera
+    camera.parallel_projection = True
+    camera.parallel_scale = scale
+    camera.focal_point = centre - np.array([0.0, 0.0, 0.2 * scale])
+    camera.position = camera.focal_point - np.array([0.0, 10 * np.linalg.norm(size), 0.0])
+    camera.up = (0.0, 0.0, 1.0)
+    camera.clipping_range = (0.01 * np.linalg.norm(size), 100 * np.linalg.norm(size))
+
+
+def bar_beside(plotter, title, steps, time, width, height):
+    """The colours' bar and the time in the right third."""
     bar = plotter.add_scalar_bar(
         title=title + "\n ",
         vertical=True,
@@ -182,13 +213,8 @@ def render(args):
     )
     bar.GetTitleTextProperty().SetJustificationToLeft()
     plotter.add_text(
-        f"t = {time:.3g} s", position=(int(0.655 * width), int(0.19 * height)),
-        font_size=15, color="#20242b",
+        time, position=(int(0.655 * width), int(0.19 * height)), font_size=15, color="#20242b",
     )
-    look_from_the_side(plotter, bounds, width, height)
-    plotter.screenshot(args.output)
-    print(f"{args.output}: {name} at t = {time:g} s, "
-          f"{shown.min():.4g} to {shown.max():.4g} {unit_name}")
 
 
 def arguments():
@@ -205,6 +231,8 @@ def arguments():
     parser.add_argument("--map", default="viridis", help="a matplotlib colour map")
     parser.add_argument("--diameter", type=float, default=0.9, help="of particles, in spacings")
     parser.add_argument("--size", type=int, nargs=2, default=(900, 1200), metavar=("W", "H"))
+    parser.add_argument("--flat", action="store_true",
+                        help="look along y, for plane strain; a wide --size suits it")
     parser.add_argument("--output", default="picture.png")
     return parser.parse_args()
 

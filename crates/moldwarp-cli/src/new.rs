@@ -24,10 +24,13 @@ macro_rules! case {
     };
 }
 
-const CASES: &[Case] = &[case!("absorbing-column":
-    "scene.toml", "dashpot.toml", "rigid.toml", "column.geo", "column.msh",
-    "exact.csv", "exact-dashpot.csv", "exact-rigid.csv", "README.md",
-)];
+const CASES: &[Case] = &[
+    case!("absorbing-column":
+        "scene.toml", "dashpot.toml", "rigid.toml", "column.geo", "column.msh",
+        "exact.csv", "exact-dashpot.csv", "exact-rigid.csv", "README.md",
+    ),
+    case!("slope": "scene.toml", "slope.geo", "slope.msh", "README.md"),
+];
 
 /// Names of the examples.
 pub fn names() -> Vec<&'static str> {

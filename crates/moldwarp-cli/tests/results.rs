@@ -197,3 +197,19 @@ fn check_says_the_plan_and_writes_nothing() {
     }
     assert!(!bench.path("out").exists());
 }
+
+/// The slope out of the binary, cut short: its own weight, then another strength.
+#[test]
+fn the_slope_is_computed() {
+    let bench = Bench::new();
+    bench.done(&["new", "slope", "mine"]);
+    let scene = bench.read("mine/scene.toml");
+    let (before, _) = scene.split_once("[[stages]]").unwrap();
+    let short = "[[stages]]\nname = \"a\"\nsteps = 40\n[[stages]]\nname = \"b\"\nsteps = 10\n\
+                 material.slope = \"weak\"\nreset = [\"displacement\"]\n";
+    bench.write("mine/scene.toml", &format!("{before}{short}"));
+    bench.done(&["run", "mine"]);
+    let summary = bench.summary("out/mine");
+    assert_eq!(summary["steps"].as_u64(), Some(50));
+    assert!(summary["energy"]["plastic"].as_f64().unwrap() >= 0.0);
+}

@@ -25,7 +25,7 @@
 use super::{BLOCK, CellForce, CellSums, Node};
 use crate::parallel::fold;
 use crate::plan::Smoothing;
-use crate::simulation::Simulation;
+use crate::simulation::{Cells, Simulation};
 use crate::tensor;
 use std::ops::Range;
 
@@ -58,6 +58,20 @@ pub(super) fn strains(sim: &mut Simulation) {
     if sim.plan.numerics.smoothing == Smoothing::Off {
         return;
     }
+    sum_at_nodes(
+        sim,
+        |cells, c, weight| cells.strains[c].volumetric * weight,
+        |node, sum, weights| node.volumetric = if weights > 0.0 { sum / weights } else { 0.0 },
+    );
+}
+
+/// Sums a value of the attached cells, given their weight w_e, and the weights themselves at each
+/// node, and has `store` make something of both.
+fn sum_at_nodes(
+    sim: &mut Simulation,
+    value: impl Fn(&Cells, usize, f64) -> f64 + Sync,
+    store: impl Fn(&mut Node, f64, f64) + Sync,
+) {
     let Simulation {
         plan,
         active,
@@ -77,10 +91,10 @@ pub(super) fn strains(sim: &mut Simulation) {
                 let c = c as usize;
                 let volume = mesh.volumes[active.elements[c] as usize];
                 let weight = weight(&cells.forces[c], &cells.sums[c], volume);
-                sum += cells.strains[c].volumetric * weight;
+                sum += value(cells, c, weight);
                 weights += weight;
             }
-            node.volumetric = if weights > 0.0 { sum / weights } else { 0.0 };
+            store(node, sum, weights);
         }
     });
 }
@@ -91,7 +105,15 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     if sim.plan.numerics.smoothing != Smoothing::Conjugate {
         return;
     }
-    nodal_mean_stress(sim);
+    // q_n: a trace is three times the mean, and a quarter goes to each node.
+    sum_at_nodes(
+        sim,
+        |cells, c, _| tensor::trace(&cells.forces[c].stress),
+        |node, sum, weights| {
+            let whole = 12.0 * weights;
+            node.mean_stress = if weights > 0.0 { sum / whole } else { 0.0 };
+        },
+    );
     let Simulation {
         plan,
         active,
@@ -122,36 +144,4 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         work
     });
     ledger.stress_smoothing_work(work[0]);
-}
-
-/// q_n of each node, Pa.
-fn nodal_mean_stress(sim: &mut Simulation) {
-    let Simulation {
-        plan,
-        active,
-        nodes,
-        cells,
-        ..
-    } = sim;
-    let (mesh, active, cells) = (&plan.mesh, &*active, &*cells);
-    let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (
-        Range<usize>,
-        &mut [Node],
-    )| {
-        for (slot, node) in slots.zip(nodes) {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for &(c, _) in active.attached(slot) {
-                let c = c as usize;
-                let volume = mesh.volumes[active.elements[c] as usize];
-                weights += weight(&cells.forces[c], &cells.sums[c], volume);
-                sum += tensor::trace(&cells.forces[c].stress);
-            }
-            node.mean_stress = if weights > 0.0 {
-                sum / (12.0 * weights)
-            } else {
-                0.0
-            };
-        }
-    });
 }

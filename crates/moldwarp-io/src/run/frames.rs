@@ -86,7 +86,7 @@ pub(crate) const PARTICLE_FIELDS: [Field<OfParticles>; 8] = [
     Field {
         name: "displacement",
         label: "m",
-        meaning: "Since the start.",
+        meaning: "Since the start, or since a stage has reset it.",
         values: |p, _| Data::Vectors(&p.displacement),
     },
     Field {

@@ -64,25 +64,25 @@ impl Watch {
     /// Looks at the step just made. Says whether the model is at rest.
     pub fn look(
         &mut self,
-        sim: &Scale,
+        scale: &Scale,
         kinetic: f64,
         stage_time: f64,
         judged: &Equilibrium,
     ) -> bool {
         self.peak = self.peak.max(kinetic);
         let calm = self.forces.ratio() <= judged.unbalanced
-            && kinetic <= judged.kinetic * self.peak.max(sim.kinetic);
+            && kinetic <= judged.kinetic * self.peak.max(scale.kinetic);
         if !calm {
             self.calm_since = None;
             return false;
         }
         let since = *self.calm_since.get_or_insert(stage_time);
-        stage_time - since >= judged.hold.unwrap_or(sim.travel_time)
+        stage_time - since >= judged.hold.unwrap_or(scale.travel_time)
     }
 
     /// [out-of-balance ratio, grid's kinetic energy over its reference].
-    pub fn ratios(&self, sim: &Scale, kinetic: f64) -> [f64; 2] {
-        let reference = self.peak.max(sim.kinetic);
+    pub fn ratios(&self, scale: &Scale, kinetic: f64) -> [f64; 2] {
+        let reference = self.peak.max(scale.kinetic);
         let share = if reference > 0.0 {
             kinetic / reference
         } else {

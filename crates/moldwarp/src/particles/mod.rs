@@ -25,7 +25,7 @@ pub struct Particles {
     pub position: Vec<Vec3>,
     /// m/s. Between the steps of a stage it belongs to the middle of the coming step.
     pub velocity: Vec<Vec3>,
-    /// Since the start, m.
+    /// Since the start, or since a stage has reset it, m.
     pub displacement: Vec<Vec3>,
     /// Cauchy stress, Pa.
     pub stress: Vec<Voigt>,

@@ -124,7 +124,6 @@ fn apply_loads(sim: &mut Simulation) {
         ..
     } = sim;
     let mesh = &plan.mesh;
-    nodes.iter_mut().for_each(|node| node.load = Vec3::ZERO);
     for point in loads.iter() {
         let p = point.particle as usize;
         let e = particles.element[p] as usize;

@@ -107,6 +107,7 @@ fn sum_nodes(sim: &mut Simulation) {
             };
             node.filling = volume / whole;
             node.density = all_mass / whole;
+            node.load = Vec3::ZERO;
         }
     });
 }

@@ -180,6 +180,8 @@ pub enum Target {
     Point(Vec3),
     /// Index into [`Plan::bodies`].
     Body(usize),
+    /// Index into [`Mesh::volume_groups`]: what is in its elements.
+    Volume(usize),
 }
 
 /// What a probe records.
@@ -197,17 +199,21 @@ pub enum Quantity {
     Stress,
     /// Force of the boundaries on the material; of surfaces with a boundary only.
     Reaction,
+    /// Volume of the material in a part of the mesh, or of a body, without what has opened in
+    /// tension.
+    Volume,
 }
 
 impl Quantity {
     /// Every quantity with its name in a scene.
-    pub const ALL: [(&'static str, Quantity); 6] = [
+    pub const ALL: [(&'static str, Quantity); 7] = [
         ("displacement", Quantity::Displacement),
         ("velocity", Quantity::Velocity),
         ("acceleration", Quantity::Acceleration),
         ("position", Quantity::Position),
         ("stress", Quantity::Stress),
         ("reaction", Quantity::Reaction),
+        ("volume", Quantity::Volume),
     ];
 
     /// The quantity's name.
@@ -219,12 +225,22 @@ impl Quantity {
             .0
     }
 
-    /// The names of its components.
+    /// The names of its components; one without a name if it is a number.
     pub fn components(self) -> &'static [&'static str] {
         match self {
+            Quantity::Volume => &[""],
             Quantity::Stress => &["xx", "yy", "zz", "xy", "yz", "zx"],
             _ => &["x", "y", "z"],
         }
+    }
+
+    /// The columns that a probe of this name records of it.
+    pub fn columns(self, probe: &str) -> impl Iterator<Item = String> {
+        let components = self.components().iter();
+        components.map(move |component| match *component {
+            "" => format!("{probe}.{}", self.name()),
+            _ => format!("{probe}.{}.{component}", self.name()),
+        })
     }
 
     /// Its unit.
@@ -235,6 +251,7 @@ impl Quantity {
             Quantity::Acceleration => "m/s2",
             Quantity::Stress => "Pa",
             Quantity::Reaction => "N",
+            Quantity::Volume => "m3",
         }
     }
 }

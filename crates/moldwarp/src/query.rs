@@ -115,27 +115,42 @@ impl Simulation {
             reaction: zero,
         };
         for (node, &n) in self.nodes.iter().zip(&self.active.nodes) {
+            // Of a node that a wall splits all sides have the same velocity.
             fields.velocity[n as usize] = node.grid_velocity;
-            fields.mass[n as usize] = node.mass;
-            fields.reaction[n as usize] = node.reaction + node.absorbing;
+            fields.mass[n as usize] += node.mass;
+            fields.reaction[n as usize] += node.reaction + node.absorbing;
         }
         fields
     }
 
-    /// A mesh node, if particles touch it.
+    /// Places of a mesh node's parts that particles touch; more than one if a wall splits it.
+    pub(crate) fn slots(&self, mesh_node: u32) -> impl Iterator<Item = usize> + '_ {
+        let grid = self.walls.grid_nodes(&self.plan.mesh, mesh_node);
+        let slots = grid.map(|g| self.active.slot_of_grid[g as usize] as usize);
+        slots.filter(|&slot| slot < self.nodes.len())
+    }
+
+    /// A mesh node, if particles touch it: of a split one the first of its parts, which are all held.
     pub(crate) fn node(&self, mesh_node: u32) -> Option<&Node> {
-        self.nodes
-            .get(self.active.slot_of_node[mesh_node as usize] as usize)
+        self.slots(mesh_node).next().map(|slot| &self.nodes[slot])
+    }
+
+    /// Force of all boundaries on the material at a mesh node, N.
+    pub(crate) fn reaction(&self, mesh_node: u32) -> Vec3 {
+        let nodes = self.slots(mesh_node).map(|slot| &self.nodes[slot]);
+        nodes.map(|n| n.reaction + n.absorbing).sum()
+    }
+
+    /// Places of the particles in an element.
+    pub(crate) fn particles_in(&self, e: u32) -> std::ops::Range<usize> {
+        let e = e as usize;
+        self.order.offsets[e] as usize..self.order.offsets[e + 1] as usize
     }
 
     /// Mean stress of the particles in an element, Pa, if there are any.
     pub(crate) fn element_stress(&self, e: u32) -> Option<Voigt> {
-        let (first, last) = (
-            self.order.offsets[e as usize],
-            self.order.offsets[e as usize + 1],
-        );
         let (mut stress, mut volume) = ([0.0; 6], 0.0);
-        for p in first as usize..last as usize {
+        for p in self.particles_in(e) {
             crate::tensor::add_scaled(
                 &mut stress,
                 &self.particles.stress[p],
@@ -150,10 +165,8 @@ impl Simulation {
     pub(crate) fn acceleration_at(&self, p: usize) -> Vec3 {
         let e = self.particles.element[p] as usize;
         let n = self.plan.mesh.barycentric(e, self.particles.position[p]);
-        let corner = |i: usize| {
-            self.node(self.plan.mesh.tets[e][i])
-                .map_or(Vec3::ZERO, |n| n.acceleration)
-        };
-        (0..4).map(|i| corner(i) * n[i]).sum()
+        let corners = self.active.nodes_of_element(e);
+        let acceleration = |i: usize| self.nodes[corners[i] as usize].acceleration;
+        (0..4).map(|i| acceleration(i) * n[i]).sum()
     }
 }

@@ -5,7 +5,7 @@ use crate::boundary::{
     Absorbing, Constraints, LoadError, LoadPoint, Surroundings, load_points, surface_nodes,
 };
 use crate::measure::{Ledger, Probes, Scale, Watch};
-use crate::mesh::Follower;
+use crate::mesh::{Follower, Walls};
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{InitialStressError, Order, Particles, SeedingError, seed};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
@@ -108,6 +108,7 @@ pub struct Simulation {
     pub(crate) plan: Plan,
     pub(crate) particles: Particles,
     pub(crate) order: Order,
+    pub(crate) walls: Walls,
     pub(crate) active: Active,
     pub(crate) nodes: Vec<Node>,
     pub(crate) cells: Cells,
@@ -125,7 +126,7 @@ pub struct Simulation {
     pub(crate) switches: Switches,
     pub(crate) watch: Watch,
     pub(crate) scale: Scale,
-    /// Nodes before the last renumbering and their mesh nodes, kept so that no step allocates.
+    /// Nodes before the last renumbering and their grid nodes, kept so that no step allocates.
     spare_nodes: Vec<Node>,
     spare_numbers: Vec<u32>,
 }
@@ -153,6 +154,7 @@ impl Simulation {
             plan,
             particles,
             order,
+            walls: Walls::default(),
             active: Active::default(),
             nodes: Vec::new(),
             cells: Cells::default(),
@@ -238,18 +240,17 @@ impl Simulation {
         self.activate();
     }
 
-    fn activate(&mut self) {
+    pub(crate) fn activate(&mut self) {
         // The last drift of nodes that stay active is still needed for its work.
         std::mem::swap(&mut self.nodes, &mut self.spare_nodes);
-        std::mem::swap(&mut self.active.nodes, &mut self.spare_numbers);
-        self.active.rebuild(&self.plan.mesh, &self.order.offsets);
+        std::mem::swap(&mut self.active.grid, &mut self.spare_numbers);
+        let (mesh, walls) = (&self.plan.mesh, &self.walls);
+        self.active.rebuild(mesh, walls, &self.order.offsets);
         self.nodes.clear();
         self.nodes.resize(self.active.nodes.len(), Node::default());
-        for (node, &mesh_node) in self.spare_nodes.iter().zip(&self.spare_numbers) {
-            if let Some(new) = self
-                .nodes
-                .get_mut(self.active.slot_of_node[mesh_node as usize] as usize)
-            {
+        for (node, &grid) in self.spare_nodes.iter().zip(&self.spare_numbers) {
+            let slot = self.active.slot_of_grid.get(grid as usize);
+            if let Some(new) = slot.and_then(|&s| self.nodes.get_mut(s as usize)) {
                 *new = *node;
             }
         }

@@ -3,7 +3,7 @@
 use crate::boundary::{Absorbing, Constraints};
 use crate::material::Material;
 use crate::measure::Watch;
-use crate::mesh::{Face, Follower};
+use crate::mesh::{Face, Follower, Mesh, Walls};
 use crate::plan::{Boundary, BoundaryKind, Plan, Until};
 use crate::simulation::{Simulation, Stop};
 use crate::{Mat3, Vec3};
@@ -76,20 +76,19 @@ impl Simulation {
         let free = |n: u32| constraints.of(n).map_or(Mat3::IDENTITY, |c| c.free);
         let mut absorbing = absorbing(self, &boundaries);
         self.follower = follower(&self.plan, &boundaries, free);
+        let walls = walls(&self.plan.mesh, &boundaries);
         let before = std::mem::take(&mut self.absorbing);
         if first && self.plan.initial_stress.is_some() {
             self.gravity = self.plan.gravity * self.switches.gravity(0.0);
             let unheld = crate::step::unheld(self);
             absorbing.go_on_from(&before, |n| -(free(n) * unheld(n)));
         } else if !first {
-            let held = |n: u32| {
-                self.node(n)
-                    .map_or(Vec3::ZERO, |n| n.reaction + n.absorbing)
-            };
-            absorbing.go_on_from(&before, |n| free(n) * held(n));
+            absorbing.go_on_from(&before, |n| free(n) * self.reaction(n));
         }
         self.constraints = constraints;
         self.absorbing = absorbing;
+        self.walls = walls;
+        self.activate();
     }
 
     /// Time left in the stage, s; infinite if it is limited by steps that are not yet done.
@@ -153,6 +152,17 @@ pub(crate) fn moduli(model: &Material) -> [f64; 3] {
         elastic.shear_modulus(),
         elastic.constrained_modulus(),
     ]
+}
+
+/// What is held in all directions is a wall where it lies inside the mesh.
+fn walls(mesh: &Mesh, boundaries: &[&Boundary]) -> Walls {
+    let holds = |b: &&&Boundary| {
+        let all = [true; 3];
+        matches!(b.kind, BoundaryKind::Fixed { directions } if directions == all)
+    };
+    let surfaces = boundaries.iter().filter(holds).flat_map(|b| &b.surfaces);
+    let faces = surfaces.flat_map(|&s| mesh.surfaces[s].faces.iter().copied());
+    Walls::new(mesh, faces)
 }
 
 fn absorbing(sim: &Simulation, boundaries: &[&Boundary]) -> Absorbing {

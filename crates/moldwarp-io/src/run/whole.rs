@@ -29,8 +29,8 @@ pub(crate) fn energy_turned_over(sim: &Simulation) -> f64 {
     sim.energy_turned_over() * factor(sim)
 }
 
-/// Appends the probes' values, in the order of the columns: forces are those on the whole body, all
-/// else is what it is at the place of the probe.
+/// Appends the probes' values, in the order of the columns: forces and volumes are those of the whole
+/// body, all else is what it is at the place of the probe.
 pub(crate) fn probe_values(sim: &Simulation, out: &mut Vec<f64>) {
     let mut at = out.len();
     sim.probe_values(out);
@@ -39,9 +39,13 @@ pub(crate) fn probe_values(sim: &Simulation, out: &mut Vec<f64>) {
     };
     for quantity in sim.plan().probes.iter().flat_map(|p| &p.quantities) {
         let values = &mut out[at..at + quantity.components().len()];
-        if *quantity == Quantity::Reaction {
-            let part = Vec3::from_slice(values);
-            values.copy_from_slice(&symmetry.whole_force(part).to_array());
+        match quantity {
+            Quantity::Reaction => {
+                let part = Vec3::from_slice(values);
+                values.copy_from_slice(&symmetry.whole_force(part).to_array());
+            }
+            Quantity::Volume => values[0] *= factor(sim),
+            _ => {}
         }
         at += values.len();
     }

@@ -45,7 +45,7 @@ fn body(
         &[("volume", span(&raw.volume)), ("region", span(&raw.region))],
     )?;
     let place = match (&raw.volume, &raw.region) {
-        (Some(volume), _) => volume_group(volume, mesh)?,
+        (Some(volume), _) => Place::VolumeGroup(volume_group(volume, mesh)?),
         (None, Some(region)) => Place::Region(checked_region(region, mesh)?),
         (None, None) => return Err(Fault::new("a body needs a place")),
     };
@@ -58,15 +58,16 @@ fn body(
     })
 }
 
-fn volume_group(volume: &Text, mesh: &Mesh) -> Result<Place, Fault> {
+/// The volume's number; one without elements is an error.
+pub(super) fn volume_group(volume: &Text, mesh: &Mesh) -> Result<usize, Fault> {
     let names = mesh.volume_groups.iter().map(|g| g.name.as_str());
     let group = find(placed(volume), "volume", "volumes of the mesh", names)?;
     if mesh.volume_groups[group].elements.is_empty() {
-        return Err(Fault::new("this body would have no particles")
-            .at(volume.span(), "the volume has no elements")
+        return Err(Fault::new(format!("volume `{}` is empty", volume.get_ref()))
+            .at(volume.span(), "has no elements")
             .help("choose another volume, or mesh this one"));
     }
-    Ok(Place::VolumeGroup(group))
+    Ok(group)
 }
 
 fn seeding(raw: Option<&Spanned<i64>>) -> Result<Seeding, Fault> {

@@ -113,9 +113,7 @@ fn columns(probes: &[Probe]) -> Vec<String> {
     let mut columns = Vec::new();
     for probe in probes {
         for quantity in &probe.quantities {
-            for component in quantity.components() {
-                columns.push(format!("{}.{}.{component}", probe.name, quantity.name()));
-            }
+            columns.extend(quantity.columns(&probe.name));
         }
     }
     columns.extend(Energies::NAMES.iter().map(|kind| format!("energy.{kind}")));

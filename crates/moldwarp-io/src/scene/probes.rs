@@ -1,6 +1,7 @@
 //! Probes: what is recorded where.
 
 use super::amount::{Named, each};
+use super::bodies::volume_group;
 use super::error::Fault;
 use super::quantity::Dimension;
 use super::raw::{RawProbe, Text};
@@ -68,15 +69,17 @@ fn target(name: &Text, raw: &RawProbe, mesh: &Mesh, bodies: &[Body]) -> Result<T
             ("surface", span(&raw.surface)),
             ("point", span(&raw.point)),
             ("body", span(&raw.body)),
+            ("volume", span(&raw.volume)),
         ],
     )?;
-    match (&raw.surface, &raw.point, &raw.body) {
-        (Some(name), _, _) => Ok(Target::Surface(surface(placed(name), mesh)?)),
-        (_, _, Some(body)) => {
+    match (&raw.surface, &raw.point, &raw.body, &raw.volume) {
+        (Some(name), ..) => Ok(Target::Surface(surface(placed(name), mesh)?)),
+        (_, _, Some(body), _) => {
             let names = bodies.iter().map(|b| b.name.as_str());
             Ok(Target::Body(find(placed(body), "body", "bodies", names)?))
         }
-        (_, Some(point), _) => {
+        (.., Some(volume)) => Ok(Target::Volume(volume_group(volume, mesh)?)),
+        (_, Some(point), ..) => {
             let x = vector("point", point, Dimension::Length)?;
             let [low, high] = mesh.bounds();
             if x.cmpge(low).all() && x.cmple(high).all() {
@@ -114,6 +117,7 @@ fn quantities(
                     ),
             );
         }
+        check_volume(span.clone(), quantity, target)?;
         if chosen.contains(&quantity) {
             return Err(Fault::new(format!("`{word}` is listed twice")).at(span, "again here"));
         }
@@ -125,4 +129,25 @@ fn quantities(
             .help("for example quantities = [\"displacement\"]"));
     }
     Ok(chosen)
+}
+
+/// Volumes are measured of parts of the mesh and of bodies, and of parts of the mesh nothing else.
+fn check_volume(
+    place: std::ops::Range<usize>,
+    quantity: Quantity,
+    target: Target,
+) -> Result<(), Fault> {
+    match (quantity, target) {
+        (Quantity::Volume, Target::Surface(_) | Target::Point(_)) => {
+            Err(Fault::new("only bodies and volumes of the mesh have a volume")
+                .at(place, "this probe has none")
+                .help("give the probe a `body`, or a `volume` of the mesh"))
+        }
+        (other, Target::Volume(_)) if other != Quantity::Volume => {
+            Err(Fault::new("of a volume of the mesh only `volume` is measured")
+                .at(place, "not this")
+                .help("quantities = [\"volume\"]; all else is of a body, a surface or a point"))
+        }
+        _ => Ok(()),
+    }
 }

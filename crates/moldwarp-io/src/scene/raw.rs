@@ -412,6 +412,10 @@ pub(super) struct RawProbe {
     /// type: name
     /// default: –
     pub body: Option<Text>,
+    /// A volume of the mesh: what is in its elements; for `volume` only.
+    /// type: name
+    /// default: –
+    pub volume: Option<Text>,
     /// What is recorded, each once; see below.
     /// type: one or a list of words of plan::Quantity
     pub quantities: Texts,

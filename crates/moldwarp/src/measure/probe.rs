@@ -3,7 +3,7 @@
 //! A surface that carries a boundary is measured on its nodes (area-weighted mean; displacement
 //! is the integral of nodal velocity, the reaction a sum), any other surface on the particles
 //! seeded next to it; a point on the particle nearest to it at the start; a body on the
-//! mass-weighted mean of its particles.
+//! mass-weighted mean of its particles; a part of the mesh on the particles in its elements.
 
 use crate::Vec3;
 use crate::mesh::Mesh;
@@ -24,6 +24,8 @@ enum Place {
     /// Places in the particle arrays with weights that sum to 1.
     Particles(Vec<(u32, f64)>),
     Body(u16),
+    /// A volume group of the mesh.
+    Volume(usize),
 }
 
 #[derive(Clone, Debug)]
@@ -56,6 +58,7 @@ impl Probes {
                 Place::Particles(vec![(nearest.unwrap_or(0) as u32, 1.0)])
             }
             Target::Body(b) => Place::Body(b as u16),
+            Target::Volume(group) => Place::Volume(group),
         };
         Probes {
             places: plan.probes.iter().map(place).collect(),
@@ -101,10 +104,8 @@ impl Probes {
         let mut columns = Vec::new();
         for probe in &plan.probes {
             for quantity in &probe.quantities {
-                for component in quantity.components() {
-                    let name = format!("{}.{}.{component}", probe.name, quantity.name());
-                    columns.push((name, quantity.unit()));
-                }
+                let names = quantity.columns(&probe.name);
+                columns.extend(names.map(|name| (name, quantity.unit())));
             }
         }
         columns
@@ -114,10 +115,10 @@ impl Probes {
     pub(crate) fn values(&self, sim: &Simulation, out: &mut Vec<f64>) {
         for (probe, place) in sim.plan().probes.iter().zip(&self.places) {
             for &quantity in &probe.quantities {
-                if quantity == Quantity::Stress {
-                    out.extend(place.stress(sim));
-                } else {
-                    out.extend(place.vector(sim, quantity).to_array());
+                match quantity {
+                    Quantity::Stress => out.extend(place.stress(sim)),
+                    Quantity::Volume => out.push(place.volume(sim)),
+                    _ => out.extend(place.vector(sim, quantity).to_array()),
                 }
             }
         }
@@ -148,6 +149,29 @@ impl Place {
                 let mean = body_mean(sim, *body, |p| particle_vector(sim, p, quantity).to_array());
                 Vec3::from_array(mean)
             }
+            Place::Volume(_) => Vec3::ZERO,
+        }
+    }
+
+    /// Volume of the material without what has opened in tension, m³.
+    fn volume(&self, sim: &Simulation) -> f64 {
+        let (plan, particles) = (sim.plan(), sim.particles());
+        let solid = |p: usize| {
+            let body = &plan.bodies[usize::from(particles.body[p])];
+            let model = &plan.materials[body.material].model;
+            particles.volume[p] * model.solid_share(&particles.state[p])
+        };
+        match self {
+            Place::Volume(group) => {
+                let elements = &plan.mesh.volume_groups[*group].elements;
+                let inside = |&e: &u32| sim.particles_in(e);
+                elements.iter().flat_map(inside).map(solid).sum()
+            }
+            Place::Body(body) => {
+                let all = 0..particles.len();
+                all.filter(|&p| particles.body[p] == *body).map(solid).sum()
+            }
+            Place::Nodes { .. } | Place::Particles(_) => 0.0,
         }
     }
 
@@ -171,6 +195,7 @@ impl Place {
                 }
             }
             Place::Body(body) => mean = body_mean(sim, *body, |p| sim.particles().stress[p]),
+            Place::Volume(_) => {}
         }
         mean
     }
@@ -184,8 +209,8 @@ impl SurfaceNode {
             Quantity::Position => self.start + self.displacement,
             Quantity::Velocity => node.map_or(Vec3::ZERO, |n| n.grid_velocity),
             Quantity::Acceleration => node.map_or(Vec3::ZERO, |n| n.acceleration),
-            Quantity::Reaction => node.map_or(Vec3::ZERO, |n| n.reaction + n.absorbing),
-            Quantity::Stress => Vec3::ZERO,
+            Quantity::Reaction => sim.reaction(self.node),
+            Quantity::Stress | Quantity::Volume => Vec3::ZERO,
         }
     }
 }
@@ -197,7 +222,7 @@ fn particle_vector(sim: &Simulation, p: usize, quantity: Quantity) -> Vec3 {
         Quantity::Position => particles.position[p],
         Quantity::Velocity => particles.velocity[p],
         Quantity::Acceleration => sim.acceleration_at(p),
-        Quantity::Reaction | Quantity::Stress => Vec3::ZERO,
+        Quantity::Reaction | Quantity::Stress | Quantity::Volume => Vec3::ZERO,
     }
 }
 

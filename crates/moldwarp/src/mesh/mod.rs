@@ -11,12 +11,14 @@ mod locate;
 mod motion;
 mod quality;
 mod topology;
+mod walls;
 
 pub use cylinder::{CylinderError, CylinderSector, Split};
 pub use generate::box_mesh;
 pub use geometry::{barycentric, tetrahedron_gradients};
 pub use motion::Follower;
 pub use quality::Quality;
+pub use walls::Walls;
 
 use crate::Vec3;
 use generate::KUHN_ORDERS;

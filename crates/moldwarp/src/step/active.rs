@@ -2,9 +2,10 @@
 //!
 //! A *cell* is an element that holds particles, or an empty one whose four nodes all belong to
 //! such elements (it may count as filled). Cells and their nodes are numbered compactly, in the
-//! mesh's order, so that the step never looks at the rest.
+//! mesh's order, so that the step never looks at the rest. Nodes are grid nodes: a mesh node that is
+//! split by a wall has one on each side (`mesh/walls.rs`).
 
-use crate::mesh::{Mesh, NONE};
+use crate::mesh::{Mesh, NONE, Walls};
 
 /// Compact numbering of cells and nodes.
 #[derive(Clone, Debug, Default)]
@@ -15,10 +16,12 @@ pub struct Active {
     pub offsets: Vec<u32>,
     /// The four nodes of each cell, as compact numbers.
     pub cell_nodes: Vec<[u32; 4]>,
-    /// Mesh node of each node, ascending.
+    /// Mesh node of each node; ascending but for those beyond a wall, which come last.
     pub nodes: Vec<u32>,
-    /// Compact number of each mesh node, or [`NONE`].
-    pub slot_of_node: Vec<u32>,
+    /// Grid node of each node, ascending.
+    pub grid: Vec<u32>,
+    /// Compact number of each grid node, or [`NONE`].
+    pub slot_of_grid: Vec<u32>,
     /// Cell of each element, or [`NONE`].
     pub cell_of_element: Vec<u32>,
     node_offsets: Vec<u32>,
@@ -32,47 +35,64 @@ impl Active {
         &self.node_cells[self.node_offsets[slot] as usize..self.node_offsets[slot + 1] as usize]
     }
 
+    /// The nodes of an element that is a cell.
+    #[inline]
+    pub fn nodes_of_element(&self, e: usize) -> [u32; 4] {
+        self.cell_nodes[self.cell_of_element[e] as usize]
+    }
+
+    /// Whether there is no wall between two neighbours.
+    pub fn share_a_face(&self, c: usize, other: usize) -> bool {
+        let other = self.cell_nodes[other];
+        let shared = self.cell_nodes[c].iter().filter(|n| other.contains(n));
+        shared.count() == 3
+    }
+
     /// Numbers cells and nodes anew from the first particle of each element.
-    pub fn rebuild(&mut self, mesh: &Mesh, particle_offsets: &[u32]) {
+    pub fn rebuild(&mut self, mesh: &Mesh, walls: &Walls, particle_offsets: &[u32]) {
+        let tets = walls.tets(mesh);
         let occupied = |e: usize| particle_offsets[e] < particle_offsets[e + 1];
-        self.slot_of_node.clear();
-        self.slot_of_node.resize(mesh.nodes.len(), NONE);
+        self.slot_of_grid.clear();
+        self.slot_of_grid.resize(walls.count(mesh), NONE);
         self.cell_of_element.clear();
         self.cell_of_element.resize(mesh.tets.len(), NONE);
         let touched = 0;
         for e in (0..mesh.tets.len()).filter(|&e| occupied(e)) {
             self.cell_of_element[e] = touched;
-            for &n in &mesh.tets[e] {
-                self.slot_of_node[n as usize] = touched;
+            for &n in &tets[e] {
+                self.slot_of_grid[n as usize] = touched;
             }
         }
-        for (e, tet) in mesh.tets.iter().enumerate() {
-            if tet.iter().all(|&n| self.slot_of_node[n as usize] != NONE) {
+        for (e, tet) in tets.iter().enumerate() {
+            if tet.iter().all(|&n| self.slot_of_grid[n as usize] != NONE) {
                 self.cell_of_element[e] = touched;
             }
         }
-        self.number(mesh, particle_offsets);
+        self.number(mesh, walls, particle_offsets);
         self.attach();
     }
 
-    fn number(&mut self, mesh: &Mesh, particle_offsets: &[u32]) {
+    fn number(&mut self, mesh: &Mesh, walls: &Walls, particle_offsets: &[u32]) {
+        let tets = walls.tets(mesh);
         self.nodes.clear();
-        for (n, slot) in self.slot_of_node.iter_mut().enumerate() {
+        self.grid.clear();
+        for (n, slot) in self.slot_of_grid.iter_mut().enumerate() {
             if *slot != NONE {
                 *slot = self.nodes.len() as u32;
-                self.nodes.push(n as u32);
+                self.nodes.push(walls.mesh_node(mesh, n as u32));
+                self.grid.push(n as u32);
             }
         }
         self.elements.clear();
         self.offsets.clear();
         self.cell_nodes.clear();
-        for (e, cell) in self.cell_of_element.iter_mut().enumerate() {
+        for (e, (cell, tet)) in self.cell_of_element.iter_mut().zip(tets).enumerate() {
             if *cell != NONE {
                 *cell = self.elements.len() as u32;
                 self.elements.push(e as u32);
                 self.offsets.push(particle_offsets[e]);
                 self.cell_nodes
-                    .push(mesh.tets[e].map(|n| self.slot_of_node[n as usize]));
+                    .push(tet.map(|n| self.slot_of_grid[n as usize]));
             }
         }
         self.offsets.push(particle_offsets[mesh.tets.len()]);
@@ -118,7 +138,7 @@ mod tests {
             offsets[e + 1] = offsets[e] + u32::from(e != hole);
         }
         let mut active = Active::default();
-        active.rebuild(&mesh, &offsets);
+        active.rebuild(&mesh, &Walls::default(), &offsets);
         assert_eq!(active.elements.len(), mesh.tets.len());
         assert_eq!(active.offsets[hole], active.offsets[hole + 1]);
         for slot in 0..active.nodes.len() {
@@ -128,7 +148,7 @@ mod tests {
         }
         // With particles in one corner only, the rest sleeps.
         let offsets: Vec<u32> = (0..=mesh.tets.len()).map(|e| u32::from(e > 0)).collect();
-        active.rebuild(&mesh, &offsets);
+        active.rebuild(&mesh, &Walls::default(), &offsets);
         assert_eq!((active.elements.len(), active.nodes.len()), (1, 4));
     }
 }

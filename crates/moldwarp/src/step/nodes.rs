@@ -103,11 +103,13 @@ pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
     apply_loads(sim);
     let sim = &*sim;
     move |mesh_node| {
-        let slot = sim.active.slot_of_node[mesh_node as usize] as usize;
-        sim.nodes.get(slot).map_or(Vec3::ZERO, |node| {
-            let internal = internal_force(slot, &sim.active, &sim.plan.mesh, &sim.cells);
-            internal + sim.gravity * node.mass + node.load
-        })
+        sim.slots(mesh_node)
+            .map(|slot| {
+                let node = &sim.nodes[slot];
+                let internal = internal_force(slot, &sim.active, &sim.plan.mesh, &sim.cells);
+                internal + sim.gravity * node.mass + node.load
+            })
+            .sum()
     }
 }
 
@@ -131,8 +133,8 @@ fn apply_loads(sim: &mut Simulation) {
         let load = point.load as usize;
         let factor = switches.load(load, clock.time);
         let force = point.force * (factor * plan.loads[load].function.value(clock.time));
-        for (i, &mesh_node) in mesh.tets[e].iter().enumerate() {
-            nodes[active.slot_of_node[mesh_node as usize] as usize].load += force * n[i];
+        for (slot, share) in active.nodes_of_element(e).into_iter().zip(n) {
+            nodes[slot as usize].load += force * share;
         }
     }
 }

@@ -78,12 +78,13 @@ fn sum_cells(sim: &mut Simulation) {
 fn sum_nodes(sim: &mut Simulation) {
     let Simulation {
         plan,
+        walls,
         active,
         nodes,
         cells,
         ..
     } = sim;
-    let (active, sums, volumes) = (&*active, &cells.sums, &plan.mesh.node_volumes);
+    let (active, sums, mesh, walls) = (&*active, &cells.sums, &plan.mesh, &*walls);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
@@ -98,7 +99,7 @@ fn sum_nodes(sim: &mut Simulation) {
                 volume += sum.solid;
                 all_mass += sum.mass[0] + sum.mass[1] + sum.mass[2] + sum.mass[3];
             }
-            let whole = volumes[active.nodes[slot] as usize];
+            let whole = walls.volume(mesh, active.grid[slot]);
             node.mass = mass;
             node.velocity = if mass > 0.0 {
                 momentum / mass
@@ -169,7 +170,8 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     ledger.grid_stress_work(work);
 }
 
-/// σ̄ = Σ σ_p V_p / Σ V_p; in a cell without particles that of the cells across its faces.
+/// σ̄ = Σ σ_p V_p / Σ V_p; in a cell without particles that of the cells across its faces,
+/// walls excepted.
 fn mean_stress(c: usize, active: &super::Active, mesh: &crate::Mesh, sums: &[CellSums]) -> Voigt {
     let (mut stress, mut volume) = (sums[c].stress, sums[c].volume);
     if volume == 0.0 {
@@ -177,7 +179,8 @@ fn mean_stress(c: usize, active: &super::Active, mesh: &crate::Mesh, sums: &[Cel
             .iter()
             .filter(|&&n| n != NONE)
         {
-            if let Some(other) = sums.get(active.cell_of_element[neighbour as usize] as usize) {
+            let other = active.cell_of_element[neighbour as usize] as usize;
+            if let Some(other) = sums.get(other).filter(|_| active.share_a_face(c, other)) {
                 add_scaled(&mut stress, &other.stress, 1.0);
                 volume += other.volume;
             }

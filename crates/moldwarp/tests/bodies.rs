@@ -60,11 +60,15 @@ fn ground(bottom: BoundaryKind, change: impl Fn(&mut Stage)) -> Plan {
         kinetic: 1e-9,
         hold: None,
     };
-    let mut stage = Stage {
-        damping: Some(0.7),
-        reset_displacement: true,
-        ..Stage::new("change", Until::Equilibrium { limit: 9.0, judged })
-    };
+    let mut stage = Stage::new("change", Until::Equilibrium { limit: 9.0, judged });
+    stage.reset_displacement = true;
+    if matches!(bottom, BoundaryKind::Roller) {
+        stage.damping = Some(0.7);
+    } else {
+        // Dashpots damp by themselves, and local damping would take their nodes' support for a force
+        // that is out of balance.
+        stage.until = Until::Duration(4.0);
+    }
     change(&mut stage);
     let k0 = stage.add.is_empty().then_some(0.5);
     Plan {
@@ -87,7 +91,10 @@ fn ground(bottom: BoundaryKind, change: impl Fn(&mut Stage)) -> Plan {
             k0: vec![k0, Some(0.4)],
             surcharge: 0.0,
         }),
-        numerics: Numerics::default(),
+        numerics: Numerics {
+            viscosity: 2e-4,
+            ..Numerics::default()
+        },
         stages: vec![Stage::new("rest", Until::Steps(50)), stage],
         mesh,
     }
@@ -192,7 +199,8 @@ fn filled_ground_settles() {
         assert!((sim.particles().total_mass() * G / weight - 1.0).abs() < 1e-12);
         let sim = run(plan);
         check_sand(&sim, -UPPER - 5e3, delta, &start);
-        assert!((reaction(&sim) / (weight + 5e3) - 1.0).abs() < 1e-3);
+        let borne = reaction(&sim) / (weight + 5e3);
+        assert!((borne - 1.0).abs() < 1e-3, "{borne} {delta}");
     }
 }
 

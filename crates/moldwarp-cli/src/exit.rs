@@ -11,8 +11,8 @@ pub enum Exit {
     // Also clap's code.
     /// Wrong input or arguments; no output was written.
     Input = 2,
-    /// A guard stopped the run: a particle left the mesh, an element turned over, there is no
-    /// stable step, or the forced one is above it. What was computed is kept, with a last frame
+    /// A guard stopped the run: a particle left the mesh, an element turned over, a body was to be
+    /// added where another one is, there is no stable step, or the forced one is above it. What was computed is kept, with a last frame
     /// and row.
     Guard = 3,
     /// Reading or writing failed during the run.
@@ -26,7 +26,10 @@ pub enum Exit {
 pub fn of_stop(stop: &Stop) -> Exit {
     match stop {
         Stop::NotAtRest { .. } => Exit::NotAtRest,
-        Stop::LeftTheMesh { .. } | Stop::TurnedOver { .. } | Stop::TimeStep { .. } => Exit::Guard,
+        Stop::LeftTheMesh { .. }
+        | Stop::TurnedOver { .. }
+        | Stop::NoRoom { .. }
+        | Stop::TimeStep { .. } => Exit::Guard,
     }
 }
 

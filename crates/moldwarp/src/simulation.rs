@@ -1,13 +1,14 @@
 //! A plan being computed.
 
 use crate::Vec3;
+use crate::bodies;
 use crate::boundary::{
     Absorbing, Constraints, LoadError, LoadPoint, Surroundings, load_points, surface_nodes,
 };
 use crate::measure::{Ledger, Probes, Scale, Watch};
 use crate::mesh::{Follower, Walls};
 use crate::particles::initial_stress::{self, Ground};
-use crate::particles::{InitialStressError, Order, Particles, SeedingError, seed};
+use crate::particles::{InitialStressError, Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
 use crate::step::{Active, CellForce, CellStrain, CellSums, Node, TimeStepError};
@@ -28,6 +29,21 @@ pub enum SetupError {
     InitialStress(#[from] InitialStressError),
     #[error("load `{load}` asks for the initial stress of body `{body}`, which has none")]
     NoInitialStress { load: String, body: String },
+    #[error(
+        "probe `{probe}` looks at particles of body `{body}`, which is {change} by stage `{stage}`: \
+         probes look at what is there in all stages"
+    )]
+    ProbeOfChange {
+        probe: String,
+        body: String,
+        stage: String,
+        /// `added` or `removed`.
+        change: &'static str,
+    },
+    #[error(
+        "probe `{probe}` looks at the particles next to its surface at the start, and there are none"
+    )]
+    ProbeOfNothing { probe: String },
     #[error("there is no stage")]
     NoStage,
 }
@@ -52,6 +68,18 @@ pub enum Stop {
          an element; give it a virtual thickness, or larger elements next to it"
     )]
     TurnedOver {
+        element: u32,
+        stage: String,
+        time: f64,
+    },
+    #[error(
+        "stage `{stage}`, {time:e} s after the start, adds body `{body}` where particles of body \
+         `{other}` are, first in element {element} (counted from 0): remove `{other}` before, or add \
+         `{body}` to elements that it does not reach"
+    )]
+    NoRoom {
+        body: String,
+        other: String,
         element: u32,
         stage: String,
         time: f64,
@@ -89,7 +117,7 @@ pub(crate) struct Clock {
     pub dt: f64,
     /// Coming step, s.
     pub next: f64,
-    /// Whether bodies were given velocities, or boundaries switched, when the stage began: what
+    /// Whether bodies were given velocities, came or went, or boundaries switched, when the stage began: what
     /// moves in held directions has to stop.
     pub new_constraints: bool,
 }
@@ -107,6 +135,8 @@ pub(crate) struct Cells {
 pub struct Simulation {
     pub(crate) plan: Plan,
     pub(crate) particles: Particles,
+    /// Seeds of the bodies that stages add.
+    pub(crate) reserve: Vec<Seed>,
     pub(crate) order: Order,
     pub(crate) walls: Walls,
     pub(crate) active: Active,
@@ -138,7 +168,7 @@ impl Simulation {
             return Err(SetupError::NoStage);
         }
         check_reactions(&plan)?;
-        let mut particles = seed(&plan.mesh, &plan.bodies, &plan.materials)?;
+        let (mut particles, reserve) = bodies::at_the_start(&plan)?;
         let mut order = Order::default();
         order.sort(&mut particles, plan.mesh.tets.len());
         let loads = ground(&plan, &mut particles, &order.offsets)?;
@@ -153,6 +183,7 @@ impl Simulation {
             switches: Switches::new(&plan),
             plan,
             particles,
+            reserve,
             order,
             walls: Walls::default(),
             active: Active::default(),
@@ -171,10 +202,21 @@ impl Simulation {
             spare_nodes: Vec::new(),
             spare_numbers: Vec::new(),
         };
+        bodies::check_probes(&simulation)?;
         simulation.scale = Scale::new(&simulation);
         simulation.activate();
         simulation.begin_stage().map_err(|stop| match stop {
             Stop::TimeStep { error, .. } => SetupError::TimeStep(error),
+            Stop::NoRoom {
+                body: second,
+                other: first,
+                element,
+                ..
+            } => SetupError::Seeding(SeedingError::Overlap {
+                first,
+                second,
+                element,
+            }),
             Stop::LeftTheMesh { .. } | Stop::TurnedOver { .. } | Stop::NotAtRest { .. } => {
                 unreachable!("nothing has moved yet")
             }
@@ -337,7 +379,7 @@ fn ground(
     };
     Ok(load_points(
         &plan.mesh,
-        &plan.loads,
+        (plan.loads.iter().enumerate()).filter(|l| plan.there_at_the_start(l.1.body)),
         particles,
         offsets,
         &surroundings,

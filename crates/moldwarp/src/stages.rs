@@ -25,6 +25,12 @@ impl Simulation {
             stage.reset_displacement,
             !stage.initial_velocities.is_empty(),
         );
+        let other_bodies = !(stage.add.is_empty() && stage.remove.is_empty());
+        if other_bodies {
+            self.change_bodies()?;
+        }
+        // Absorbing boundaries resist where there is material, so they are set up anew for other bodies.
+        let switched = switched || other_bodies;
         self.clock.new_constraints = switched && !first;
         if switched || first {
             self.set_boundaries(first);

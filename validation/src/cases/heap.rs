@@ -93,9 +93,14 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
                 .map(|u| u.length())
                 .fold(0.0, f64::max)
                 / HEIGHT;
-            places.iter().map(|&i| p.position[i as usize]).collect()
+            places
+                .iter()
+                .flatten()
+                .map(|&i| p.position[i as usize])
+                .collect()
         });
-        let moved = |id: usize| (p.position[places[id] as usize] - start[id]).length();
+        let place = |id: usize| places[id].expect("all stay") as usize;
+        let moved = |id: usize| (p.position[place(id)] - start[id]).length();
         let far = (0..start.len()).max_by(|&a, &b| moved(a).total_cmp(&moved(b)));
         let far = far.expect("a heap has particles");
         if moved(far) / HEIGHT > o.moved {

@@ -16,11 +16,11 @@ pub struct Summary {
     pub title: String,
     /// `"done"`, or why the run was stopped.
     pub exit: String,
-    /// Number of particles.
+    /// Number of particles at the end.
     pub particles: usize,
     /// Number of elements of the mesh.
     pub elements: usize,
-    /// Of all bodies, kg.
+    /// Of all bodies that are there at the end, kg.
     pub mass: f64,
     /// Number of steps done.
     pub steps: u64,

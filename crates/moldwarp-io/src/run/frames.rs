@@ -68,7 +68,7 @@ pub(crate) const PARTICLE_FIELDS: [Field<OfParticles>; 8] = [
     Field {
         name: "id",
         label: "",
-        meaning: "Number at the start; never changes.",
+        meaning: "Number; never changes. Bodies that are not there have theirs reserved.",
         values: |p, _| Data::U32(&p.id),
     },
     Field {

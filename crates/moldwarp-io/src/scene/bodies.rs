@@ -19,17 +19,7 @@ pub(super) fn bodies(
     }
     let mut bodies: Vec<Body> = Vec::new();
     for (name, raw) in &raw.0 {
-        let body = body(name, raw, mesh, materials)?;
-        if let (Place::VolumeGroup(_), Some(volume)) = (&body.place, &raw.volume)
-            && let Some(other) = bodies.iter().find(|b| b.place == body.place)
-        {
-            return Err(
-                Fault::new(format!("two bodies fill the volume `{}`", volume.get_ref()))
-                    .at(volume.span(), format!("already filled by `{}`", other.name))
-                    .help("a place can hold one body only"),
-            );
-        }
-        bodies.push(body);
+        bodies.push(body(name, raw, mesh, materials)?);
     }
     Ok(bodies)
 }

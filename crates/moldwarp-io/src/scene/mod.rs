@@ -18,6 +18,7 @@ mod mesh;
 mod numerics;
 mod output;
 mod overrides;
+mod presence;
 mod probes;
 mod quantity;
 mod raw;
@@ -43,6 +44,7 @@ pub(crate) use {quantity::dimensions, unsupported::later};
 use moldwarp::particles::SeedingError;
 use moldwarp::step::TimeStepError;
 use moldwarp::{Plan, SetupError};
+use presence::Presence;
 use quantity::Dimension;
 use raw::RawScene;
 use std::ops::Range;
@@ -81,6 +83,8 @@ pub(crate) struct Origin {
     initial_stress: Option<Range<usize>>,
     /// Names of bodies and where they stand.
     bodies: Vec<(String, Range<usize>)>,
+    /// The same of probes.
+    probes: Vec<(String, Range<usize>)>,
 }
 
 impl Origin {
@@ -97,9 +101,26 @@ impl Origin {
             (SetupError::Seeding(SeedingError::Overlap { first, second, .. }), _) => {
                 self.overlap(first, second)
             }
+            (SetupError::ProbeOfChange { probe, .. } | SetupError::ProbeOfNothing { probe }, _) => {
+                self.lost(error, probe)
+            }
             _ => Fault::new(error.to_string()),
         };
         overrides::blame(fault, text, &self.overrides).in_file(&self.name, text)
+    }
+
+    /// A probe without its particles.
+    fn lost(&self, error: &SetupError, probe: &str) -> Fault {
+        let text = error.to_string();
+        let problem = text.split_once(": ").map_or(&*text, |parts| parts.0);
+        let fault = Fault::new(problem).help(
+            "put the probe where a body is in all stages, or on a surface with a boundary, whose nodes \
+             stay",
+        );
+        let places = self.probes.iter().filter(|p| p.0 == probe);
+        places.fold(fault, |fault, (_, place)| {
+            fault.at(place.clone(), "has nothing to look at in some stage")
+        })
     }
 
     fn overlap(&self, first: &str, second: &str) -> Fault {
@@ -229,7 +250,12 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         boundaries: &boundaries,
         loads: &loads,
     };
-    let stages = stages::stages(&raw.stages, &named)?;
+    let presence = Presence::new(&raw.stages, &bodies)?;
+    presence.check_volumes(&raw.bodies.0)?;
+    presence.check_k0(&raw.bodies.0)?;
+    let stages = stages::stages(&raw.stages, &named, &presence)?;
+    presence.check_loads(&raw.loads, (&loads, &stages))?;
+    notes.extend(presence.notes());
     let raw_bodies = raw.bodies.0.iter().map(|b| &b.1);
     let initial_stress = initial_stress::initial_stress(raw.initial_stress.as_ref(), raw_bodies)?;
     let compare = output::compare(&raw.compare, &probes, &folder)?;
@@ -264,10 +290,10 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         origin: Origin {
             time_step: values::span(&raw.numerics.time_step),
             initial_stress: values::span(&raw.initial_stress),
-            bodies: raw
-                .bodies
-                .0
-                .iter()
+            bodies: (raw.bodies.0.iter())
+                .map(|(name, _)| (name.get_ref().clone(), name.span()))
+                .collect(),
+            probes: (raw.probes.0.iter())
                 .map(|(name, _)| (name.get_ref().clone(), name.span()))
                 .collect(),
             ..Origin::default()

@@ -207,7 +207,7 @@ pub(super) struct RawMaterial {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawBody {
-    /// All elements of a volume of the mesh; no two bodies the same.
+    /// All elements of a volume of the mesh; no two bodies the same at the same time.
     /// type: name
     /// default: –
     pub volume: Option<Text>,
@@ -222,7 +222,8 @@ pub(super) struct RawBody {
     /// type: 1, 4 or 10
     /// default: 4
     pub particles_per_element: Option<Spanned<i64>>,
-    /// Horizontal over vertical [initial stress](#initial-stress); without it the body has none.
+    /// Horizontal over vertical [initial stress](#initial-stress); without it the body has none. Not
+    /// for a body that a stage adds.
     /// type: number > 0
     /// default: –
     pub k0: Option<RawAmount>,
@@ -505,6 +506,15 @@ pub(super) struct RawStage {
     /// default: none
     #[serde(default)]
     pub material: Named<Text>,
+    /// Bodies that come when the stage begins, at rest and free of stress, in the mesh as it then is.
+    /// What no earlier stage has removed is not there until then.
+    /// type: name or list of names
+    /// default: none
+    pub add: Option<Texts>,
+    /// Bodies that are taken away when the stage begins. Their loads must be `off` by then.
+    /// type: name or list of names
+    /// default: none
+    pub remove: Option<Texts>,
     /// Boundaries and loads, by name, that are switched on when the stage begins. What no earlier
     /// stage has switched off is off until then.
     /// type: name or list of names

@@ -2,6 +2,7 @@
 
 use super::amount::{Amount, AmountOr, Spanned, each};
 use super::error::Fault;
+use super::presence::Presence;
 use super::quantity::Dimension;
 use super::raw::{RawEquilibrium, RawRamp, RawStage, Text, Texts};
 use super::suggest;
@@ -22,7 +23,11 @@ pub(super) struct Named<'a> {
     pub loads: &'a [Load],
 }
 
-pub(super) fn stages(raw: &[Spanned<RawStage>], named: &Named) -> Result<Vec<Stage>, Fault> {
+pub(super) fn stages(
+    raw: &[Spanned<RawStage>],
+    named: &Named,
+    presence: &Presence,
+) -> Result<Vec<Stage>, Fault> {
     if raw.is_empty() {
         return Err(
             Fault::new("the scene has no stages, so nothing would be computed")
@@ -31,8 +36,9 @@ pub(super) fn stages(raw: &[Spanned<RawStage>], named: &Named) -> Result<Vec<Sta
     }
     let mut stages: Vec<Stage> = Vec::new();
     let mut switched: Vec<(Item, bool)> = Vec::new();
-    for raw in raw {
-        let stage = stage(raw.get_ref(), named, &mut switched)?;
+    for (number, raw) in raw.iter().enumerate() {
+        let presence = (number, presence);
+        let stage = stage(raw.get_ref(), named, presence, &mut switched)?;
         if stages.iter().any(|s| s.name == stage.name) {
             return Err(
                 Fault::new(format!("two stages are called `{}`", stage.name))
@@ -46,12 +52,19 @@ pub(super) fn stages(raw: &[Spanned<RawStage>], named: &Named) -> Result<Vec<Sta
 }
 
 /// `switched` is how earlier stages have left what they named.
-fn stage(raw: &RawStage, named: &Named, switched: &mut Vec<(Item, bool)>) -> Result<Stage, Fault> {
+fn stage(
+    raw: &RawStage,
+    named: &Named,
+    (number, presence): (usize, &Presence),
+    switched: &mut Vec<(Item, bool)>,
+) -> Result<Stage, Fault> {
     let mut initial_velocities = Vec::new();
     for (body, velocity) in &raw.initial_velocity.0 {
         let names = named.bodies.iter().map(|b| b.name.as_str());
+        let place = find(placed(body), "body", "bodies", names)?;
+        presence.needed(number, place, body.span())?;
         initial_velocities.push((
-            find(placed(body), "body", "bodies", names)?,
+            place,
             vector("initial_velocity", velocity, Dimension::Velocity)?,
         ));
     }
@@ -59,6 +72,7 @@ fn stage(raw: &RawStage, named: &Named, switched: &mut Vec<(Item, bool)>) -> Res
     for (body, material) in &raw.material.0 {
         let names = named.bodies.iter().map(|b| b.name.as_str());
         let place = find(placed(body), "body", "bodies", names)?;
+        presence.needed(number, place, body.span())?;
         let names = named.materials.iter().map(|m| m.name.as_str());
         let other = find(placed(material), "material", "materials", names)?;
         let [before, after] =
@@ -87,6 +101,8 @@ fn stage(raw: &RawStage, named: &Named, switched: &mut Vec<(Item, bool)>) -> Res
         damping: raw.damping.as_ref().map(damping).transpose()?,
         initial_velocities,
         materials,
+        remove: presence.removed_by(number),
+        add: presence.added_by(number),
         on,
         off,
         levels: levels(raw, named)?,

@@ -1,11 +1,9 @@
 //! What the scene format has a name for but this version cannot compute.
 
 /// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
-const KEYS: [(&str, &str); 5] = [
+const KEYS: [(&str, &str); 3] = [
     ("contacts", "gravity"),
     ("particle_spacing", "particles_per_element"),
-    ("add", "duration"),
-    ("remove", "duration"),
     ("checkpoint_interval", "frames"),
 ];
 
@@ -14,7 +12,7 @@ pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];
 /// What probes record.
 pub(super) const QUANTITIES: [&str; 1] = ["penetration"];
 /// Energies in the history.
-pub(super) const ENERGIES: [&str; 3] = ["friction", "contact", "removed"];
+pub(super) const ENERGIES: [&str; 2] = ["friction", "contact"];
 
 /// Whether `key` is one of them where `siblings` are the keys that are known.
 pub(super) fn key(key: &str, siblings: &[&str]) -> bool {

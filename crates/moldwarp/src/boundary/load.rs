@@ -50,16 +50,16 @@ pub struct Surroundings<'a> {
     pub stress: &'a dyn Fn(usize, Vec3) -> Voigt,
 }
 
-/// The points of all loads. `offsets` are the first particles of the elements.
-pub fn load_points(
+/// The points of loads, each given with its number. `offsets` are the first particles of the elements.
+pub fn load_points<'a>(
     mesh: &Mesh,
-    loads: &[Load],
+    loads: impl Iterator<Item = (usize, &'a Load)>,
     particles: &Particles,
     offsets: &[u32],
     ground: &Surroundings,
 ) -> Result<Vec<LoadPoint>, LoadError> {
     let mut points = Vec::new();
-    for (number, load) in loads.iter().enumerate() {
+    for (number, load) in loads {
         let faces: Vec<Face> = load
             .surfaces
             .iter()

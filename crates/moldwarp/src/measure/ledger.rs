@@ -80,6 +80,9 @@ pub struct Energies {
     pub damping: f64,
     /// Taken by absorbing boundaries: dissipated in dashpots, stored in springs.
     pub absorbed: f64,
+    /// Σ ½ m_p v_p² of particles that stages have taken away; those added come at rest. All other kinds
+    /// are works, so what a removed body has stored stays in `elastic` and `gravity`.
+    pub removed: f64,
     /// Lost between nodes and particles by the lumped mass matrix and the remap.
     pub transfer: f64,
     /// Lost because forces do not know of the smoothing of strains.
@@ -94,7 +97,7 @@ pub struct Energies {
 
 impl Energies {
     /// Names in the order of [`Energies::values`].
-    pub const NAMES: [&'static str; 14] = [
+    pub const NAMES: [&'static str; 15] = [
         "kinetic",
         "kinetic_grid",
         "elastic",
@@ -104,6 +107,7 @@ impl Energies {
         "plastic",
         "damping",
         "absorbed",
+        "removed",
         "transfer",
         "smoothing",
         "integration",
@@ -111,7 +115,7 @@ impl Energies {
         "residual",
     ];
 
-    pub fn values(&self) -> [f64; 14] {
+    pub fn values(&self) -> [f64; 15] {
         [
             self.kinetic,
             self.kinetic_grid,
@@ -122,6 +126,7 @@ impl Energies {
             self.plastic,
             self.damping,
             self.absorbed,
+            self.removed,
             self.transfer,
             self.smoothing,
             self.integration,
@@ -142,6 +147,7 @@ impl Energies {
             plastic: self.plastic * factor,
             damping: self.damping * factor,
             absorbed: self.absorbed * factor,
+            removed: self.removed * factor,
             transfer: self.transfer * factor,
             smoothing: self.smoothing * factor,
             integration: self.integration * factor,
@@ -183,6 +189,7 @@ impl Ledger {
             + now.plastic
             + now.damping
             + now.absorbed
+            + now.removed
             + now.transfer
             + now.smoothing
             + now.integration
@@ -201,6 +208,12 @@ impl Ledger {
     pub(crate) fn give(&mut self, kinetic: f64) {
         self.given += kinetic - self.particles;
         self.particles = kinetic;
+    }
+
+    /// Particles with this kinetic energy are taken away.
+    pub(crate) fn remove(&mut self, kinetic: f64) {
+        self.now.removed += kinetic;
+        self.particles -= kinetic;
     }
 
     /// Half a drift's work of cells: [particles' stresses, mean minus particles', viscous].
@@ -278,6 +291,7 @@ impl Ledger {
             e.plastic,
             e.damping,
             e.absorbed,
+            e.removed,
         ];
         let turned = 0.5 * physical.iter().map(|e| e.abs()).sum::<f64>();
         self.turned_over = self.turned_over.max(turned);

@@ -65,6 +65,28 @@ impl Probes {
         }
     }
 
+    /// Surfaces with a boundary have other elements beside them, as bodies have come or gone.
+    pub(crate) fn bodies_changed(&mut self, plan: &Plan, offsets: &[u32]) {
+        for (place, probe) in self.places.iter_mut().zip(&plan.probes) {
+            if let (Place::Nodes { elements, .. }, Target::Surface(s)) = (place, probe.target) {
+                *elements = occupied_elements(&plan.mesh, s, offsets);
+            }
+        }
+    }
+
+    /// The bodies whose particles a probe looks at; none if it looks at nodes of the mesh.
+    pub(crate) fn bodies(&self, probe: usize, particles: &Particles) -> Option<Vec<usize>> {
+        let body = |place: u32| particles.body.get(place as usize).copied();
+        match &self.places[probe] {
+            Place::Nodes { .. } => None,
+            Place::Body(body) => Some(vec![usize::from(*body)]),
+            Place::Particles(places) => {
+                let bodies = places.iter().filter_map(|p| body(p.0));
+                Some(bodies.map(usize::from).collect())
+            }
+        }
+    }
+
     /// Follows particles to their new places.
     pub(crate) fn reorder(&mut self, destination: &[u32]) {
         for place in &mut self.places {

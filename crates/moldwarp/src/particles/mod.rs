@@ -6,7 +6,7 @@ mod seeding;
 
 pub use initial_stress::{InitialStress, InitialStressError};
 pub use order::Order;
-pub use seeding::{SeedingError, seed};
+pub use seeding::{Seed, SeedingError, check_overlap, particles, seeds};
 
 use crate::Vec3;
 use crate::material::State;
@@ -15,7 +15,7 @@ use crate::tensor::Voigt;
 /// All particles. The arrays have the same length and order.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
-    /// Number of each particle at the start; it never changes.
+    /// Number of each particle; it never changes. Bodies that are not there have theirs reserved.
     pub id: Vec<u32>,
     /// Index into the plan's bodies.
     pub body: Vec<u16>,
@@ -69,12 +69,48 @@ impl Particles {
             .sum()
     }
 
-    /// For each id, the place of its particle in the arrays.
-    pub fn places_by_id(&self) -> Vec<u32> {
-        let mut places = vec![0; self.len()];
+    /// For each id, the place of its particle in the arrays; none if its body is not there.
+    pub fn places_by_id(&self) -> Vec<Option<u32>> {
+        let count = self.id.iter().max().map_or(0, |&id| id as usize + 1);
+        let mut places = vec![None; count];
         for (place, &id) in self.id.iter().enumerate() {
-            places[id as usize] = place as u32;
+            places[id as usize] = Some(place as u32);
         }
         places
     }
+
+    /// Puts others after these.
+    pub(crate) fn append(&mut self, others: Particles) {
+        self.id.extend(others.id);
+        self.body.extend(others.body);
+        self.element.extend(others.element);
+        self.position.extend(others.position);
+        self.velocity.extend(others.velocity);
+        self.displacement.extend(others.displacement);
+        self.stress.extend(others.stress);
+        self.state.extend(others.state);
+        self.volume.extend(others.volume);
+        self.initial_volume.extend(others.initial_volume);
+        self.mass.extend(others.mass);
+    }
+
+    /// Keeps those whose place is marked, in their order.
+    pub(crate) fn retain(&mut self, keep: &[bool]) {
+        retain(&mut self.id, keep);
+        retain(&mut self.body, keep);
+        retain(&mut self.element, keep);
+        retain(&mut self.position, keep);
+        retain(&mut self.velocity, keep);
+        retain(&mut self.displacement, keep);
+        retain(&mut self.stress, keep);
+        retain(&mut self.state, keep);
+        retain(&mut self.volume, keep);
+        retain(&mut self.initial_volume, keep);
+        retain(&mut self.mass, keep);
+    }
+}
+
+fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    values.retain(|_| *keep.next().expect("a mark for each particle"));
 }

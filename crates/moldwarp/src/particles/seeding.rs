@@ -47,20 +47,20 @@ pub enum SeedingError {
     },
 }
 
-/// A particle to be.
-struct Seed {
-    element: u32,
-    position: Vec3,
-    volume: f64,
-    body: u16,
+/// A particle to be. Its place is one in its element, wherever the mesh has moved by the time that it
+/// is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Seed {
+    pub id: u32,
+    pub body: u16,
+    pub element: u32,
+    /// Number of the point of the body's [`Seeding::points`].
+    point: u8,
 }
 
-/// Particles of all bodies, ordered by element.
-pub fn seed(
-    mesh: &Mesh,
-    bodies: &[Body],
-    materials: &[NamedMaterial],
-) -> Result<Particles, SeedingError> {
+/// The seeds of all bodies in the mesh at the start, ordered by element. So every particle has its id
+/// before there is any, whenever its body comes.
+pub fn seeds(mesh: &Mesh, bodies: &[Body]) -> Result<Vec<Seed>, SeedingError> {
     let mut found = Vec::new();
     for (b, body) in bodies.iter().enumerate() {
         let before = found.len();
@@ -72,41 +72,58 @@ pub fn seed(
         }
     }
     found.sort_by_key(|s| (s.element, s.body));
-    check_overlap(&found, bodies, mesh)?;
+    for (id, seed) in found.iter_mut().enumerate() {
+        seed.id = id as u32;
+    }
+    Ok(found)
+}
+
+/// Particles at rest and free of stress at seeds, in their order.
+pub fn particles(
+    seeds: &[Seed],
+    mesh: &Mesh,
+    bodies: &[Body],
+    materials: &[NamedMaterial],
+) -> Particles {
+    let rules: Vec<_> = bodies.iter().map(|b| b.seeding.points()).collect();
     let mut particles = Particles::default();
-    for (id, seed) in found.into_iter().enumerate() {
-        let density = materials[bodies[seed.body as usize].material].density;
-        particles.id.push(id as u32);
+    for seed in seeds {
+        let (body, rule) = (usize::from(seed.body), &rules[usize::from(seed.body)]);
+        let element = seed.element as usize;
+        let volume = mesh.volumes[element] / rule.len() as f64;
+        let position = point(&rule[usize::from(seed.point)], &mesh.corners(element));
+        particles.id.push(seed.id);
         particles.body.push(seed.body);
         particles.element.push(seed.element);
-        particles.position.push(seed.position);
+        particles.position.push(position);
         particles.velocity.push(Vec3::ZERO);
         particles.displacement.push(Vec3::ZERO);
         particles.stress.push([0.0; 6]);
         particles.state.push(Default::default());
-        particles.volume.push(seed.volume);
-        particles.initial_volume.push(seed.volume);
-        particles.mass.push(density * seed.volume);
+        particles.volume.push(volume);
+        particles.initial_volume.push(volume);
+        let density = materials[bodies[body].material].density;
+        particles.mass.push(density * volume);
     }
-    Ok(particles)
+    particles
+}
+
+fn point(n: &[f64; 4], corners: &[Vec3; 4]) -> Vec3 {
+    (0..4).map(|i| n[i] * corners[i]).sum()
 }
 
 fn fill(mesh: &Mesh, body: &Body, number: u16, found: &mut Vec<Seed>) {
     let rule = body.seeding.points();
     let mut seed_element = |element: u32, wanted: &dyn Fn(Vec3) -> bool| {
         let corners = mesh.corners(element as usize);
-        let volume = mesh.volumes[element as usize] / rule.len() as f64;
-        for n in &rule {
-            let position = (0..4).map(|i| n[i] * corners[i]).sum();
-            if wanted(position) {
-                found.push(Seed {
-                    element,
-                    position,
-                    volume,
-                    body: number,
-                });
-            }
-        }
+        let inside = rule.iter().enumerate();
+        let inside = inside.filter(|(_, n)| wanted(point(n, &corners)));
+        found.extend(inside.map(|(point, _)| Seed {
+            id: 0,
+            body: number,
+            element,
+            point: point as u8,
+        }));
     };
     match &body.place {
         Place::VolumeGroup(group) => {
@@ -119,20 +136,31 @@ fn fill(mesh: &Mesh, body: &Body, number: u16, found: &mut Vec<Seed>) {
     }
 }
 
-/// Two bodies overlap where both seed the same point, or more volume than the element has.
-fn check_overlap(found: &[Seed], bodies: &[Body], mesh: &Mesh) -> Result<(), SeedingError> {
-    for seeds in found.chunk_by(|a, b| a.element == b.element) {
-        let (first, element) = (seeds[0].body, seeds[0].element);
-        let Some(other) = seeds.iter().find(|s| s.body != first) else {
+/// Two bodies overlap where both have a particle at the same point, or more volume than the element
+/// has. `particles` are ordered by element.
+pub fn check_overlap(
+    particles: &Particles,
+    bodies: &[Body],
+    mesh: &Mesh,
+) -> Result<(), SeedingError> {
+    let mut end = 0;
+    for same in particles.element.chunk_by(|a, b| a == b) {
+        let range = end..end + same.len();
+        end = range.end;
+        let (body, position) = (
+            &particles.body[range.clone()],
+            &particles.position[range.clone()],
+        );
+        let Some(other) = body.iter().find(|&&b| b != body[0]) else {
             continue;
         };
-        let volume: f64 = seeds.iter().map(|s| s.volume).sum();
-        let twice = |i: usize| seeds[..i].iter().any(|s| s.position == seeds[i].position);
-        if volume > mesh.volumes[element as usize] * (1.0 + 1e-9) || (0..seeds.len()).any(twice) {
+        let volume: f64 = particles.volume[range].iter().sum();
+        let twice = |i: usize| position[..i].contains(&position[i]);
+        if volume > mesh.volumes[same[0] as usize] * (1.0 + 1e-9) || (0..same.len()).any(twice) {
             return Err(SeedingError::Overlap {
-                first: bodies[first as usize].name.clone(),
-                second: bodies[other.body as usize].name.clone(),
-                element,
+                first: bodies[usize::from(body[0])].name.clone(),
+                second: bodies[usize::from(*other)].name.clone(),
+                element: same[0],
             });
         }
     }

@@ -15,6 +15,11 @@ pub struct Stage {
     /// Bodies that are of another material from the stage's beginning: indices into [`Plan::bodies`]
     /// and [`Plan::materials`]. Mass, stress and state stay.
     pub materials: Vec<(usize, usize)>,
+    /// Bodies that are taken away when the stage begins: indices into [`Plan::bodies`].
+    pub remove: Vec<usize>,
+    /// Bodies that come when the stage begins, at rest and free of stress. What a stage adds without
+    /// an earlier one having removed it is not there at the start.
+    pub add: Vec<usize>,
     /// Switched on when the stage begins. What a stage switches on without an earlier one having
     /// switched it off is off from the start.
     pub on: Vec<Item>,
@@ -91,6 +96,8 @@ impl Stage {
             damping: None,
             initial_velocities: Vec::new(),
             materials: Vec::new(),
+            remove: Vec::new(),
+            add: Vec::new(),
             on: Vec::new(),
             off: Vec::new(),
             levels: Vec::new(),
@@ -100,6 +107,13 @@ impl Stage {
 }
 
 impl Plan {
+    /// Whether a body is there before the first stage begins.
+    pub fn there_at_the_start(&self, body: usize) -> bool {
+        let mut stages = self.stages.iter();
+        let first = stages.find(|s| s.add.contains(&body) || s.remove.contains(&body));
+        first.is_none_or(|s| !s.add.contains(&body))
+    }
+
     /// Whether an item is on before the first stage begins.
     pub fn on_at_the_start(&self, item: Item) -> bool {
         let first = self

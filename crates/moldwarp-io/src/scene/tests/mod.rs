@@ -2,6 +2,7 @@
 
 mod messages;
 mod plans;
+mod presence;
 mod sectors;
 mod stages;
 

@@ -1,0 +1,180 @@
+//! Bodies that stages add (fill) and take away (excavation).
+//!
+//! Seeds are found once, in the mesh at the start, for all bodies of the plan. So every particle has
+//! its id, and every load its faces, whenever its body comes; and a body comes to the elements that
+//! it was planned for, wherever the mesh has moved them.
+
+use crate::boundary::{Surroundings, load_points};
+use crate::measure::Scale;
+use crate::particles::{Particles, Seed, check_overlap, particles, seeds};
+use crate::plan::{Load, Plan};
+use crate::simulation::{SetupError, Simulation, Stop};
+
+/// The particles at the start, not ordered, and the seeds of bodies that stages add.
+pub(crate) fn at_the_start(plan: &Plan) -> Result<(Particles, Vec<Seed>), SetupError> {
+    let all = seeds(&plan.mesh, &plan.bodies)?;
+    let count = plan.bodies.len();
+    let there: Vec<bool> = (0..count).map(|b| plan.there_at_the_start(b)).collect();
+    let of = |wanted: &dyn Fn(usize) -> bool| -> Vec<Seed> {
+        let all = all.iter().copied();
+        all.filter(|s| wanted(usize::from(s.body))).collect()
+    };
+    let first = of(&|b| there[b]);
+    let first = particles(&first, &plan.mesh, &plan.bodies, &plan.materials);
+    check_overlap(&first, &plan.bodies, &plan.mesh)?;
+    let added: Vec<bool> = (0..count)
+        .map(|b| plan.stages.iter().any(|s| s.add.contains(&b)))
+        .collect();
+    let reserve = of(&|b| added[b]);
+    for (load, later) in plan.loads.iter().enumerate().filter(|l| added[l.1.body]) {
+        let own: Vec<Seed> = of(&|b| b == later.body);
+        check_load(plan, (load, later), &own)?;
+    }
+    Ok((first, reserve))
+}
+
+/// Whether the particles of a body that comes later will be next to all faces of its load.
+fn check_load(plan: &Plan, load: (usize, &Load), seeds: &[Seed]) -> Result<(), SetupError> {
+    let particles = particles(seeds, &plan.mesh, &plan.bodies, &plan.materials);
+    let elements = 0..=plan.mesh.tets.len() as u32;
+    let first = |e: u32| seeds.partition_point(|s| s.element < e) as u32;
+    let offsets: Vec<u32> = elements.map(first).collect();
+    let ground = stress_free(plan);
+    let loads = std::iter::once(load);
+    load_points(&plan.mesh, loads, &particles, &offsets, &ground)?;
+    Ok(())
+}
+
+/// What loads have to know of a body that comes later: it has no initial stress.
+fn stress_free(plan: &Plan) -> Surroundings<'_> {
+    Surroundings {
+        share: plan.symmetry.map_or(1.0, |s| s.share),
+        up: -plan.gravity.normalize_or_zero(),
+        stress: &|_, _| [0.0; 6],
+    }
+}
+
+/// Probes must look at particles that are there in all stages.
+pub(crate) fn check_probes(sim: &Simulation) -> Result<(), SetupError> {
+    let stages = &sim.plan.stages;
+    if stages
+        .iter()
+        .all(|s| s.add.is_empty() && s.remove.is_empty())
+    {
+        return Ok(());
+    }
+    for (number, probe) in sim.plan.probes.iter().enumerate() {
+        let Some(bodies) = sim.probes.bodies(number, &sim.particles) else {
+            continue;
+        };
+        if bodies.is_empty() {
+            let probe = probe.name.clone();
+            return Err(SetupError::ProbeOfNothing { probe });
+        }
+        for body in bodies {
+            let changes = stages.iter().find_map(|stage| {
+                let removes = stage.remove.contains(&body);
+                (removes || stage.add.contains(&body)).then_some((stage, removes))
+            });
+            if let Some((stage, removes)) = changes {
+                return Err(SetupError::ProbeOfChange {
+                    probe: probe.name.clone(),
+                    body: sim.plan.bodies[body].name.clone(),
+                    stage: stage.name.clone(),
+                    change: if removes { "removed" } else { "added" },
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Simulation {
+    /// Takes away and adds the bodies of the stage that begins.
+    pub(crate) fn change_bodies(&mut self) -> Result<(), Stop> {
+        let stage = &self.plan.stages[self.clock.stage];
+        let added = |s: &&Seed| stage.add.contains(&usize::from(s.body));
+        let seeds: Vec<Seed> = self.reserve.iter().filter(added).copied().collect();
+        self.check_room(&seeds)?;
+        self.take_away();
+        let plan = &self.plan;
+        let new = particles(&seeds, &plan.mesh, &plan.bodies, &plan.materials);
+        self.particles.append(new);
+        self.reorder();
+        self.load_added_bodies();
+        self.probes.bodies_changed(&self.plan, &self.order.offsets);
+        self.scale = Scale::new(self);
+        Ok(())
+    }
+
+    /// Elements that a body is to fill must hold nothing of another one that stays or comes.
+    fn check_room(&self, seeds: &[Seed]) -> Result<(), Stop> {
+        let stage = &self.plan.stages[self.clock.stage];
+        let mut owner = vec![None; self.plan.mesh.tets.len()];
+        let (bodies, elements) = (&self.particles.body, &self.particles.element);
+        let stay = bodies.iter().zip(elements);
+        for (&body, &element) in stay.filter(|p| !stage.remove.contains(&usize::from(*p.0))) {
+            owner[element as usize] = Some(body);
+        }
+        for seed in seeds {
+            let owner = owner[seed.element as usize].get_or_insert(seed.body);
+            if *owner != seed.body {
+                let name = |body: u16| self.plan.bodies[usize::from(body)].name.clone();
+                return Err(Stop::NoRoom {
+                    body: name(seed.body),
+                    other: name(*owner),
+                    element: seed.element,
+                    stage: stage.name.clone(),
+                    time: self.clock.time,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes away the particles of removed bodies, and what looks at them and loads them.
+    fn take_away(&mut self) {
+        let Simulation {
+            plan,
+            particles,
+            clock,
+            ledger,
+            loads,
+            probes,
+            ..
+        } = self;
+        let removed = &plan.stages[clock.stage].remove;
+        if removed.is_empty() {
+            return;
+        }
+        let stays = |body: &u16| !removed.contains(&usize::from(*body));
+        let keep: Vec<bool> = particles.body.iter().map(stays).collect();
+        let gone = (0..particles.len()).filter(|&p| !keep[p]);
+        let kinetic = |p: usize| 0.5 * particles.mass[p] * particles.velocity[p].length_squared();
+        ledger.remove(gone.map(kinetic).sum());
+        let mut left = 0;
+        let place = |&stays: &bool| {
+            let place = left;
+            left += u32::from(stays);
+            place
+        };
+        let places: Vec<u32> = keep.iter().map(place).collect();
+        particles.retain(&keep);
+        loads.retain(|point| keep[point.particle as usize]);
+        for point in loads {
+            point.particle = places[point.particle as usize];
+        }
+        probes.reorder(&places);
+    }
+
+    fn load_added_bodies(&mut self) {
+        let plan = &self.plan;
+        let added = &plan.stages[self.clock.stage].add;
+        let own = plan.loads.iter().enumerate();
+        let own = own.filter(|l| added.contains(&l.1.body));
+        let filled = (&self.particles, &self.order.offsets[..]);
+        let points = load_points(&plan.mesh, own, filled.0, filled.1, &stress_free(plan));
+        let points = points.expect("the faces of loads have been checked at the start");
+        self.loads.extend(points);
+    }
+}

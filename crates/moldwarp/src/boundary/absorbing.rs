@@ -140,7 +140,7 @@ impl AbsorbingNode {
         let inertia = Mat3::IDENTITY * m + self.spring * (0.25 * h * h);
         let half = self.dashpot * (0.5 * h);
         let matrix = inertia + half;
-        let right = (inertia - half) * v + (f + self.rest - self.spring * self.displacement) * h;
+        let right = (inertia - half) * v + (f + self.support()) * h;
         match constraints.of(self.node) {
             None => matrix.inverse() * right,
             Some(held) => {
@@ -149,6 +149,11 @@ impl AbsorbingNode {
                 (free * matrix * free + blocked * m).inverse() * (free * right)
             }
         }
+    }
+
+    /// What the boundary holds the node with when it does not move, R₀ − K a, N.
+    pub fn support(&self) -> Vec3 {
+        self.rest - self.spring * self.displacement
     }
 
     /// Force of the boundary on the node in a kick of length `h` that leads from `before` to

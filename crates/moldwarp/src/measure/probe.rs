@@ -78,7 +78,7 @@ impl Probes {
     pub(crate) fn bodies(&self, probe: usize, particles: &Particles) -> Option<Vec<usize>> {
         let body = |place: u32| particles.body.get(place as usize).copied();
         match &self.places[probe] {
-            Place::Nodes { .. } => None,
+            Place::Nodes { .. } | Place::Volume(_) => None,
             Place::Body(body) => Some(vec![usize::from(*body)]),
             Place::Particles(places) => {
                 let bodies = places.iter().filter_map(|p| body(p.0));

@@ -2,6 +2,7 @@
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
 use super::{Active, BLOCK, Node};
+use crate::boundary::AbsorbingNode;
 use crate::measure::{DriftWork, Forces};
 use crate::mesh::Mesh;
 use crate::parallel::fold;
@@ -52,12 +53,14 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             let internal = internal_force(slot, active, mesh, cells);
             let unbalanced = internal + gravity * node.mass + node.load;
             let constraint = constraints.of(mesh_node);
-            // What a constraint holds is balanced and not to be damped.
+            // What a constraint or an absorbing boundary holds is balanced and not to be damped.
             let free = constraint.map_or(Mat3::IDENTITY, |c| c.free);
-            node.damping = free * (-damping * (free * unbalanced).abs() * signs(node.velocity));
+            let absorbing = absorbing.of(mesh_node);
+            let driving = unbalanced + absorbing.map_or(Vec3::ZERO, AbsorbingNode::support);
+            node.damping = free * (-damping * (free * driving).abs() * signs(node.velocity));
             let mut force = unbalanced + node.damping;
             node.absorbing = Vec3::ZERO;
-            if let Some(boundary) = absorbing.of(mesh_node) {
+            if let Some(boundary) = absorbing {
                 // The velocity that has moved the boundary, if it has moved.
                 let begin = if before > 0.0 {
                     node.grid_velocity

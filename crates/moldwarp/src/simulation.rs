@@ -7,7 +7,9 @@ use crate::boundary::{
 use crate::measure::{Ledger, Probes, Scale, Watch};
 use crate::mesh::Follower;
 use crate::particles::initial_stress::{self, Ground};
-use crate::particles::{InitialStressError, Order, Particles, SeedingError, seed};
+use crate::particles::{
+    InheritedError, InitialStressError, Order, Particles, SeedingError, populate,
+};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
 use crate::step::{Active, CellForce, CellStrain, CellSums, Node, TimeStepError};
@@ -18,6 +20,8 @@ use crate::switches::Switches;
 pub enum SetupError {
     #[error(transparent)]
     Seeding(#[from] SeedingError),
+    #[error(transparent)]
+    Inherited(#[from] InheritedError),
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -137,7 +141,7 @@ impl Simulation {
             return Err(SetupError::NoStage);
         }
         check_reactions(&plan)?;
-        let mut particles = seed(&plan.mesh, &plan.bodies, &plan.materials)?;
+        let mut particles = populate(&plan)?;
         let mut order = Order::default();
         order.sort(&mut particles, plan.mesh.tets.len());
         let loads = ground(&plan, &mut particles, &order.offsets)?;
@@ -177,6 +181,8 @@ impl Simulation {
                 unreachable!("nothing has moved yet")
             }
         })?;
+        // They are among the particles now.
+        simulation.plan.inherited = Particles::default();
         Ok(simulation)
     }
 
@@ -199,6 +205,11 @@ impl Simulation {
 
     /// One time step, and what has to be done if it is the last of a stage.
     pub fn step(&mut self) -> Result<(), Stop> {
+        self.step_and(|_| ())
+    }
+
+    /// The same; `ended` sees the end of a stage before the next one changes anything.
+    pub fn step_and(&mut self, ended: impl FnOnce(&Simulation)) -> Result<(), Stop> {
         if self.finished() {
             return Ok(());
         }
@@ -219,6 +230,7 @@ impl Simulation {
         if !at_rest {
             self.has_to_be_at_rest()?;
         }
+        ended(self);
         self.clock.stage += 1;
         if self.finished() {
             Ok(())

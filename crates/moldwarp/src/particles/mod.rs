@@ -1,9 +1,12 @@
 //! Material points: a structure of arrays, ordered by the element they are in.
 
+mod inherited;
 pub mod initial_stress;
 mod order;
 mod seeding;
 
+pub use inherited::InheritedError;
+pub(crate) use inherited::populate;
 pub use initial_stress::{InitialStress, InitialStressError};
 pub use order::Order;
 pub use seeding::{SeedingError, seed};

@@ -231,7 +231,10 @@ fn messages() {
         outside.contains("24 particles of body `layer`"),
         "{outside}"
     );
-    assert!(outside.contains("make the mesh larger"), "{outside}");
+    assert!(
+        outside.contains("the mesh has to hold the ground"),
+        "{outside}"
+    );
 }
 
 #[test]

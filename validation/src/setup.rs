@@ -62,6 +62,7 @@ pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
         loads: Vec::new(),
         probes: Vec::new(),
         initial_stress: None,
+        inherited: Default::default(),
         numerics: Numerics::default(),
         stages: vec![Stage::new("run", Until::Duration(end))],
     }

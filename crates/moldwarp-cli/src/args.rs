@@ -38,6 +38,10 @@ pub struct SceneArgs {
     /// Replace a value of the scene, such as numerics.courant=0.3 or stages.loading.duration="1 s"
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub sets: Vec<String>,
+    /// Begin with the ground as an earlier run left it: its folder and the name of a stage that it
+    /// completed. Its bodies are found by name
+    #[arg(long, value_name = "OUT@STAGE")]
+    pub from: Option<String>,
     /// Number of threads; all cores if not given. The results do not depend on it
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,

@@ -40,7 +40,7 @@ fn plan(f: &Forecast, threads: usize) -> String {
     lines.push(steps(f));
     lines.push(effort(f, threads));
     lines.push(format!(
-        "disk        {} in {} frames and the history",
+        "disk        {} in {} frames, the ends of stages and the history",
         text::bytes(f.disk),
         f.frames
     ));

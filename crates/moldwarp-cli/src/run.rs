@@ -39,7 +39,10 @@ pub fn options(args: &RunArgs, threads: usize) -> RunOptions {
 /// Sets the threads up and reads the scene. Returns the number of threads beside it.
 pub fn load(args: &SceneArgs) -> Result<(Scene, usize), Failure> {
     let threads = start_threads(args)?;
-    let scene = scene::load(&args.scene, &args.sets).map_err(Failure::input)?;
+    let mut scene = scene::load(&args.scene, &args.sets).map_err(Failure::input)?;
+    if let Some(from) = &args.from {
+        scene::inherit(&mut scene, from).map_err(Failure::input)?;
+    }
     Ok((scene, threads))
 }
 

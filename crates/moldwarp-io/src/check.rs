@@ -31,7 +31,7 @@ pub struct Forecast {
     /// Linux only.
     pub memory: Option<u64>,
     pub frames: u64,
-    /// Bytes of all frames and of the history.
+    /// Bytes of all frames, of the ends of stages and of the history.
     pub disk: f64,
     /// Columns of the history with their units.
     pub columns: Vec<(String, String)>,
@@ -81,7 +81,10 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
     let frames = outputs(scene.output.frames, end);
     let rows = outputs(scene.output.history, end);
     let frame = frame_bytes(particles, nodes, elements) as f64;
-    let disk = frames as f64 * frame + (rows as usize * columns.len() * 20) as f64;
+    // The end of a stage is a frame of the particles with three more fields.
+    let stage = frame_bytes(particles, 0, 0) + 24 * particles;
+    let stages = (sim.plan().stages.len() * stage) as f64;
+    let disk = frames as f64 * frame + stages + (rows as usize * columns.len() * 20) as f64;
     let (pace, stopped) = trial(&mut sim);
     Ok(Forecast {
         title,

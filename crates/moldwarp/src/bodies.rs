@@ -6,25 +6,27 @@
 
 use crate::boundary::{Surroundings, load_points};
 use crate::measure::Scale;
-use crate::particles::{Particles, Seed, check_overlap, particles, seeds};
+use crate::particles::{Particles, Seed, check_overlap, inherited, particles, seeds};
 use crate::plan::{Load, Plan};
 use crate::simulation::{SetupError, Simulation, Stop};
 
 /// The particles at the start, not ordered, and the seeds of bodies that stages add.
 pub(crate) fn at_the_start(plan: &Plan) -> Result<(Particles, Vec<Seed>), SetupError> {
-    let all = seeds(&plan.mesh, &plan.bodies)?;
     let count = plan.bodies.len();
     let there: Vec<bool> = (0..count).map(|b| plan.there_at_the_start(b)).collect();
+    let added: Vec<bool> = (0..count)
+        .map(|b| plan.stages.iter().any(|s| s.add.contains(&b)))
+        .collect();
+    let inherits = inherited::bodies(plan);
+    let all = seeds(&plan.mesh, &plan.bodies, |b| added[b] || !inherits[b])?;
     let of = |wanted: &dyn Fn(usize) -> bool| -> Vec<Seed> {
         let all = all.iter().copied();
         all.filter(|s| wanted(usize::from(s.body))).collect()
     };
-    let first = of(&|b| there[b]);
+    let first = of(&|b| there[b] && !inherits[b]);
     let first = particles(&first, &plan.mesh, &plan.bodies, &plan.materials);
     check_overlap(&first, &plan.bodies, &plan.mesh)?;
-    let added: Vec<bool> = (0..count)
-        .map(|b| plan.stages.iter().any(|s| s.add.contains(&b)))
-        .collect();
+    let first = inherited::append(first, plan, all.len() as u32)?;
     let reserve = of(&|b| added[b]);
     for (load, later) in plan.loads.iter().enumerate().filter(|l| added[l.1.body]) {
         let own: Vec<Seed> = of(&|b| b == later.body);

@@ -8,7 +8,7 @@ use crate::Vec3;
 use crate::boundary::Function;
 use crate::material::Material;
 use crate::mesh::Mesh;
-use crate::particles::InitialStress;
+use crate::particles::{InitialStress, Particles};
 use crate::symmetry::Symmetry;
 
 /// Everything that decides a simulation's result. Output is not part of it.
@@ -27,6 +27,9 @@ pub struct Plan {
     pub probes: Vec<Probe>,
     /// Stress before the first stage, if the ground has any.
     pub initial_stress: Option<InitialStress>,
+    /// Particles as an earlier run left them, of all bodies that are not seeded; none if all are.
+    /// Ids, elements, velocities and displacements do not count. A simulation takes them out.
+    pub inherited: Particles,
     pub numerics: Numerics,
     pub stages: Vec<Stage>,
 }

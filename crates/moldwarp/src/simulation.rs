@@ -8,7 +8,7 @@ use crate::boundary::{
 use crate::measure::{Ledger, Probes, Scale, Watch};
 use crate::mesh::{Follower, Walls};
 use crate::particles::initial_stress::{self, Ground};
-use crate::particles::{InitialStressError, Order, Particles, Seed, SeedingError};
+use crate::particles::{InheritedError, InitialStressError, Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
 use crate::step::{Active, CellForce, CellStrain, CellSums, Node, TimeStepError};
@@ -19,6 +19,8 @@ use crate::switches::Switches;
 pub enum SetupError {
     #[error(transparent)]
     Seeding(#[from] SeedingError),
+    #[error(transparent)]
+    Inherited(#[from] InheritedError),
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -221,6 +223,8 @@ impl Simulation {
                 unreachable!("nothing has moved yet")
             }
         })?;
+        // They are among the particles now.
+        simulation.plan.inherited = Particles::default();
         Ok(simulation)
     }
 
@@ -243,6 +247,11 @@ impl Simulation {
 
     /// One time step, and what has to be done if it is the last of a stage.
     pub fn step(&mut self) -> Result<(), Stop> {
+        self.step_and(|_| ())
+    }
+
+    /// The same; `ended` sees the end of a stage before the next one changes anything.
+    pub fn step_and(&mut self, ended: impl FnOnce(&Simulation)) -> Result<(), Stop> {
         if self.finished() {
             return Ok(());
         }
@@ -263,6 +272,7 @@ impl Simulation {
         if !at_rest {
             self.has_to_be_at_rest()?;
         }
+        ended(self);
         self.clock.stage += 1;
         if self.finished() {
             Ok(())

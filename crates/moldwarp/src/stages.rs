@@ -71,7 +71,7 @@ impl Simulation {
     }
 
     /// Sets up the boundaries that are on. An absorbing one begins in equilibrium: with the reaction
-    /// that has held its nodes, at the start of a run with that of the initial stress.
+    /// that has held its nodes, at the start of a run with that of the initial or inherited stress.
     fn set_boundaries(&mut self, first: bool) {
         let boundaries: Vec<&Boundary> = (self.plan.boundaries.iter())
             .zip(&self.switches.boundaries)
@@ -84,7 +84,8 @@ impl Simulation {
         self.follower = follower(&self.plan, &boundaries, free);
         let walls = walls(&self.plan.mesh, &boundaries);
         let before = std::mem::take(&mut self.absorbing);
-        if first && self.plan.initial_stress.is_some() {
+        let stressed = self.plan.initial_stress.is_some() || !self.plan.inherited.is_empty();
+        if first && stressed {
             self.gravity = self.plan.gravity * self.switches.gravity(0.0);
             let unheld = crate::step::unheld(self);
             absorbing.go_on_from(&before, |n| -(free(n) * unheld(n)));

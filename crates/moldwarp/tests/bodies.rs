@@ -62,13 +62,7 @@ fn ground(bottom: BoundaryKind, change: impl Fn(&mut Stage)) -> Plan {
     };
     let mut stage = Stage::new("change", Until::Equilibrium { limit: 9.0, judged });
     stage.reset_displacement = true;
-    if matches!(bottom, BoundaryKind::Roller) {
-        stage.damping = Some(0.7);
-    } else {
-        // Dashpots damp by themselves, and local damping would take their nodes' support for a force
-        // that is out of balance.
-        stage.until = Until::Duration(4.0);
-    }
+    stage.damping = Some(0.7);
     change(&mut stage);
     let k0 = stage.add.is_empty().then_some(0.5);
     Plan {
@@ -82,6 +76,7 @@ fn ground(bottom: BoundaryKind, change: impl Fn(&mut Stage)) -> Plan {
             boundary(&mesh, "bottom", &["z-min"], bottom),
         ],
         loads: vec![],
+        inherited: Default::default(),
         probes: vec![Probe {
             name: "bottom".into(),
             target: Target::Surface(mesh.surface("z-min").unwrap()),

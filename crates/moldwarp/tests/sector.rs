@@ -50,6 +50,7 @@ fn plan(split: Split, mass: MassMatrix) -> Plan {
         loads: vec![],
         probes: vec![],
         initial_stress: None,
+        inherited: Default::default(),
         numerics: Numerics {
             mass,
             ..Numerics::default()

@@ -66,6 +66,7 @@ fn ground(bottom: BoundaryKind) -> Plan {
             k0: vec![Some(0.5), Some(0.4)],
             surcharge: 0.0,
         }),
+        inherited: Default::default(),
         numerics: Numerics::default(),
         stages: vec![Stage::new("rest", Until::Steps(1000))],
         mesh,

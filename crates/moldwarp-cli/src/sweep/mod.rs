@@ -32,6 +32,9 @@ pub fn sweep(args: &SweepArgs) -> Result<Exit, Failure> {
         Some(path) => path.clone(),
         None => sweep::default_path(&checked.case),
     };
+    if let Some(earlier) = &checked.earlier {
+        earlier.keep_from(&path).map_err(Failure::input)?;
+    }
     let (folder, replaced) = SweepFolder::prepare(&path, &checked.folder, args.force)
         .map_err(|e| Failure::from(RunError::from(e)))?;
     let table = Table::new(&variations, &runs, &checked.columns);
@@ -67,6 +70,7 @@ struct Checked {
     folder: PathBuf,
     /// Of all scenes, each once.
     notes: Vec<String>,
+    earlier: Option<scene::Earlier>,
     /// Of each scene.
     hashes: Vec<String>,
     columns: Vec<Vec<String>>,
@@ -77,8 +81,12 @@ fn check_all(args: &SceneArgs, runs: &[Run]) -> Result<Checked, Failure> {
     let mut checked = Checked::default();
     for run in runs {
         let wrong = |error: RunError| Failure::input(named(error, run));
-        let scene = scene::load_varied(&args.scene, &args.sets, &run.varied)
+        let mut scene = scene::load_varied(&args.scene, &args.sets, &run.varied)
             .map_err(|e| wrong(e.into()))?;
+        if let Some(from) = &args.from {
+            scene::inherit(&mut scene, from).map_err(|e| wrong(e.into()))?;
+            checked.earlier.clone_from(&scene.earlier);
+        }
         checked.case.clone_from(&scene.case);
         checked.folder.clone_from(&scene.folder);
         for note in &scene.notes {

@@ -50,6 +50,9 @@ impl Job<'_> {
         for set in self.args.scene.sets.iter().chain(self.varied) {
             command.arg(format!("--set={set}"));
         }
+        if let Some(from) = &self.args.scene.from {
+            command.arg(format!("--from={from}"));
+        }
         if self.args.force {
             command.arg("--force");
         }

@@ -11,11 +11,14 @@ const SUMMARY: &str = "summary.json";
 const LOG: &str = "run.log";
 /// Frames are in a folder of their own; the `.pvd` files beside it name them.
 const FRAMES: &str = "frames";
+/// Particles at the ends of stages, in a folder of their own.
+const STAGES: &str = "stages";
 /// Everything a run writes, by its name in the folder.
-const OURS: [&str; 8] = [
+const OURS: [&str; 9] = [
     SUMMARY,
     LOG,
     FRAMES,
+    STAGES,
     "scene.toml",
     "history.csv",
     "particles.pvd",
@@ -113,6 +116,8 @@ impl Folder {
         // The log first: from here on the folder is known for an unfinished run.
         fs::File::create(&log).map_err(FileError::at("create", &log))?;
         fs::create_dir_all(&frames).map_err(FileError::at("create", &frames))?;
+        let stages = path.join(STAGES);
+        fs::create_dir_all(&stages).map_err(FileError::at("create", &stages))?;
         Ok((Folder { path: named() }, replaced))
     }
 
@@ -131,7 +136,7 @@ impl Folder {
             clear(path)?;
             fs::remove_file(&log).map_err(FileError::at("remove", &log))?;
         }
-        for folder in [&path.join(FRAMES), path] {
+        for folder in [&path.join(FRAMES), &path.join(STAGES), path] {
             // It fails where something is left, which stays, and where there is no folder.
             let _ = fs::remove_dir(folder);
         }
@@ -166,6 +171,19 @@ impl Folder {
     /// A frame's path from this folder, with `/` between the parts.
     pub fn frame(kind: &str, number: usize) -> String {
         format!("{FRAMES}/{kind}_{number:05}.vtu")
+    }
+
+    /// Whether the folder at a path is that of a run.
+    pub(crate) fn is_a_run(path: &Path) -> bool {
+        path.join(LOG).is_file() && path.join("scene.toml").is_file()
+    }
+
+    /// The particles at the end of a stage: its path from the folder of the run. The number tells
+    /// stages apart whose names look the same in a name of a file.
+    pub fn stage(number: usize, name: &str) -> String {
+        let mut safe = crate::sweep::safe(name);
+        safe.truncate(80);
+        format!("{STAGES}/{number:02}_{safe}.vtu")
     }
 }
 
@@ -217,16 +235,18 @@ fn clear(path: &Path) -> Result<(), FileError> {
     if !path.join(LOG).exists() {
         return Ok(());
     }
-    let frames = path.join(FRAMES);
-    if frames.is_dir() {
-        for entry in fs::read_dir(&frames).map_err(FileError::at("read", &frames))? {
-            let file = entry.map_err(FileError::at("read", &frames))?.path();
+    for folder in [FRAMES, STAGES].map(|name| path.join(name)) {
+        if !folder.is_dir() {
+            continue;
+        }
+        for entry in fs::read_dir(&folder).map_err(FileError::at("read", &folder))? {
+            let file = entry.map_err(FileError::at("read", &folder))?.path();
             if file.extension().is_some_and(|e| e == "vtu" || e == "part") {
                 fs::remove_file(&file).map_err(FileError::at("remove", &file))?;
             }
         }
     }
-    for name in OURS.iter().filter(|&&n| n != FRAMES && n != LOG) {
+    for name in OURS.iter().filter(|n| ![FRAMES, STAGES, LOG].contains(n)) {
         for file in [path.join(name), path.join(format!("{name}.part"))] {
             if file.exists() {
                 fs::remove_file(&file).map_err(FileError::at("remove", &file))?;
@@ -249,7 +269,12 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("out/case");
         assert!(!prepare(&out, false).unwrap());
-        for name in ["scene.toml", "history.csv", "frames/mesh_00000.vtu"] {
+        for name in [
+            "scene.toml",
+            "history.csv",
+            "frames/mesh_00000.vtu",
+            "stages/00_x.vtu",
+        ] {
             fs::write(out.join(name), "").unwrap();
         }
         let refused = prepare(&out, false).unwrap_err();
@@ -258,8 +283,13 @@ mod tests {
 
         fs::write(out.join("summary.json"), "{}").unwrap();
         assert!(prepare(&out, false).unwrap());
-        assert_eq!(fs::read_dir(&out).unwrap().count(), 2, "log and frames");
+        assert_eq!(
+            fs::read_dir(&out).unwrap().count(),
+            3,
+            "log, frames and stages"
+        );
         assert_eq!(fs::read_dir(out.join("frames")).unwrap().count(), 0);
+        assert_eq!(fs::read_dir(out.join("stages")).unwrap().count(), 0);
 
         assert!(prepare(&out, true).unwrap());
     }

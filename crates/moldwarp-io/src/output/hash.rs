@@ -1,6 +1,6 @@
 //! Fingerprints by which two scenes, or the final states of two runs, are told to be the same.
 
-use moldwarp::{Plan, Vec3};
+use moldwarp::{Particles, Plan, Vec3};
 
 /// BLAKE3 over named arrays of little-endian values.
 ///
@@ -73,6 +73,7 @@ pub fn scene_hash(plan: &Plan) -> String {
         loads,
         probes,
         initial_stress,
+        inherited,
         numerics,
         stages,
     } = plan;
@@ -95,9 +96,22 @@ pub fn scene_hash(plan: &Plan) -> String {
     h.text("loads", &format!("{loads:?}"));
     h.text("probes", &format!("{probes:?}"));
     h.text("initial_stress", &format!("{initial_stress:?}"));
+    inherited_particles(&mut h, inherited);
     h.text("numerics", &format!("{numerics:?}"));
     h.text("stages", &format!("{stages:?}"));
     h.finish()
+}
+
+/// What counts of inherited particles.
+fn inherited_particles(h: &mut Hasher, p: &Particles) {
+    h.numbers("inherited", p.body.iter().map(|&b| b.into()));
+    h.vectors("position", p.position.iter().copied());
+    let (stress, state) = (p.stress.as_flattened(), p.state.as_flattened());
+    h.floats("stress", stress.iter().copied());
+    h.floats("state", state.iter().copied());
+    h.floats("volume", p.volume.iter().copied());
+    h.floats("initial_volume", p.initial_volume.iter().copied());
+    h.floats("mass", p.mass.iter().copied());
 }
 
 #[cfg(test)]

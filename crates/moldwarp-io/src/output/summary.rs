@@ -14,6 +14,8 @@ pub struct Summary {
     pub case: String,
     /// The title of the scene.
     pub title: String,
+    /// `OUT@STAGE` as given, if bodies are as an earlier run left them; else null.
+    pub from: Option<String>,
     /// `"done"`, or why the run was stopped.
     pub exit: String,
     /// Number of particles at the end.
@@ -104,6 +106,7 @@ mod tests {
         let summary = Summary {
             case: "column".into(),
             title: "A column".into(),
+            from: Some("out/pit@dug".into()),
             exit: "done".into(),
             particles: 8,
             elements: 6,

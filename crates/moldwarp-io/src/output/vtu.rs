@@ -62,6 +62,29 @@ impl<'a> Array<'a> {
     }
 }
 
+/// Names that belong to a whole file, in its field data.
+#[derive(Clone, Copy, Debug)]
+pub struct Texts<'a> {
+    pub name: &'a str,
+    pub values: &'a [String],
+}
+
+impl Texts<'_> {
+    /// As VTK has texts: the codes of their bytes, each text ended by 0.
+    fn tag(&self) -> String {
+        let bytes = self.values.iter().flat_map(|v| v.bytes().chain([0]));
+        format!(
+            "<Array type=\"String\" Name=\"{}\" NumberOfTuples=\"{}\" format=\"ascii\">{}</Array>\n",
+            escape(self.name),
+            self.values.len(),
+            bytes
+                .map(|b| format!("{b} "))
+                .collect::<String>()
+                .trim_end()
+        )
+    }
+}
+
 impl Data<'_> {
     fn type_name(&self) -> &'static str {
         match self {
@@ -128,7 +151,7 @@ fn put<T, const N: usize>(
     values.iter().try_for_each(|v| out.write_all(&bytes(v)))
 }
 
-/// Writes points, each a cell of its own, with fields.
+/// Writes points, each a cell of its own, with fields, and texts for the whole.
 ///
 /// `positions` in m, `time` in s; every field has as many entries as there are points.
 pub fn write_points(
@@ -136,6 +159,7 @@ pub fn write_points(
     time: f64,
     positions: &[Vec3],
     fields: &[Array],
+    texts: &[Texts],
 ) -> Result<(), FileError> {
     let count = positions.len();
     let steps = |first| Data::Steps {
@@ -155,7 +179,7 @@ pub fn write_points(
             "",
         ),
     ];
-    write(path, time, positions, fields, &cells)
+    write(path, (time, texts), positions, fields, &cells)
 }
 
 /// Writes a tetrahedral mesh with fields on its nodes.
@@ -186,12 +210,12 @@ pub fn write_mesh(
             "",
         ),
     ];
-    write(path, time, nodes, fields, &cells)
+    write(path, (time, &[]), nodes, fields, &cells)
 }
 
 fn write(
     path: &Path,
-    time: f64,
+    (time, texts): (f64, &[Texts]),
     points: &[Vec3],
     fields: &[Array],
     cells: &[Array; 3],
@@ -206,6 +230,7 @@ fn write(
         .collect();
     let mut header = Header::default();
     let time = header.array(&time, " NumberOfTuples=\"1\"");
+    let texts: String = texts.iter().map(Texts::tag).collect();
     let nodes = header.array(&points, "");
     let cell_tags: String = cells.iter().map(|a| header.array(a, "")).collect();
     let field_tags: String = fields.iter().map(|a| header.array(a, "")).collect();
@@ -215,7 +240,7 @@ fn write(
             out,
             "<?xml version=\"1.0\"?>\n\
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <UnstructuredGrid>\n<FieldData>\n{time}</FieldData>\n\
+             <UnstructuredGrid>\n<FieldData>\n{time}{texts}</FieldData>\n\
              <Piece NumberOfPoints=\"{point_count}\" NumberOfCells=\"{cell_count}\">\n\
              <PointData>\n{field_tags}</PointData>\n<Points>\n{nodes}</Points>\n\
              <Cells>\n{cell_tags}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
@@ -301,10 +326,21 @@ mod tests {
             ),
             Array::new("stress", Data::Tensors(&stress), "Pa"),
         ];
-        write_points(&path, 0.125, &x, &fields).unwrap();
+        let names = [
+            "stage 1".to_owned(),
+            "Böschung <1>".to_owned(),
+            String::new(),
+        ];
+        let texts = Texts {
+            name: "names",
+            values: &names,
+        };
+        write_points(&path, 0.125, &x, &fields, &[texts]).unwrap();
 
         let frame = read(&path).unwrap();
         assert_eq!(frame.time, 0.125);
+        assert_eq!(frame.texts("names").unwrap(), names);
+        assert!(frame.texts("stages").is_none());
         assert_eq!(frame.points, x.map(|x| x.to_array()));
         assert_eq!(frame.cell_nodes, [0, 1]);
         assert_eq!(frame.field("id").unwrap().values, [7.0, 9.0]);
@@ -347,6 +383,7 @@ mod tests {
             0.0,
             &[],
             &[Array::new("v", Data::Vectors(&[]), "m/s")],
+            &[],
         )
         .unwrap();
         let frame = read(&path).unwrap();

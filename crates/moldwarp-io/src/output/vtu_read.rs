@@ -14,6 +14,8 @@ pub struct Frame {
     /// The nodes of all cells, one after the other.
     pub cell_nodes: Vec<i64>,
     pub fields: Vec<Field>,
+    /// Texts for the whole, by name.
+    pub texts: Vec<(String, Vec<String>)>,
 }
 
 /// Values at the points, `components` for each.
@@ -28,6 +30,12 @@ impl Frame {
     /// The field of this name.
     pub fn field(&self, name: &str) -> Option<&Field> {
         self.fields.iter().find(|f| f.name == name)
+    }
+
+    /// The texts of this name.
+    pub fn texts(&self, name: &str) -> Option<&[String]> {
+        let found = self.texts.iter().find(|t| t.0 == name)?;
+        Some(&found.1)
     }
 }
 
@@ -67,6 +75,9 @@ fn parse(bytes: &[u8]) -> Result<Frame, &'static str> {
             "<PointData>" | "<Points>" | "<Cells>" | "<FieldData>" => inside = line,
             _ => {}
         }
+        if let Some(tag) = line.strip_prefix("<Array type=\"String\" ") {
+            frame.texts.push(texts(tag)?);
+        }
         let Some(tag) = line.strip_prefix("<DataArray ") else {
             continue;
         };
@@ -84,6 +95,20 @@ fn parse(bytes: &[u8]) -> Result<Frame, &'static str> {
         }
     }
     Ok(frame)
+}
+
+fn texts(tag: &str) -> Result<(String, Vec<String>), &'static str> {
+    const BROKEN: &str = "its texts are not readable";
+    let name = attribute(tag, "Name").ok_or(BROKEN)?.to_owned();
+    let (_, rest) = tag.split_once('>').ok_or(BROKEN)?;
+    let codes = rest.strip_suffix("</Array>").ok_or(BROKEN)?;
+    let bytes: Result<Vec<u8>, _> = codes.split_whitespace().map(str::parse).collect();
+    let bytes = bytes.map_err(|_| BROKEN)?;
+    let texts = bytes.split_inclusive(|&b| b == 0).map(|text| {
+        let text = text.strip_suffix(&[0]).ok_or(BROKEN)?;
+        String::from_utf8(text.to_vec()).map_err(|_| BROKEN)
+    });
+    Ok((name, texts.collect::<Result<_, _>>()?))
 }
 
 fn array(tag: &str, data: &[u8]) -> Result<Field, &'static str> {

@@ -73,7 +73,9 @@ fn files(out: &Path) -> Vec<String> {
         names.collect()
     };
     let mut files = names(out);
-    files.retain(|name| name != "frames");
+    files.retain(|name| !["frames", "stages"].contains(&&name[..]));
+    let stages = names(&out.join("stages")).into_iter();
+    files.extend(stages.map(|name| format!("stages/{}", name.replace("few-steps", "STAGE"))));
     let frames = names(&out.join("frames")).into_iter();
     let first = frames.filter(|name| name.ends_with("_00000.vtu"));
     files.extend(first.map(|name| format!("frames/{name}")));

@@ -1,7 +1,7 @@
 //! ParaView frames of a simulation.
 
 use crate::output::pvd::Collection;
-use crate::output::vtu::{self, Array, Data};
+use crate::output::vtu::{self, Array, Data, Texts};
 use crate::output::{FileError, Folder};
 use moldwarp::NodeFields;
 use moldwarp::material::StateField;
@@ -25,6 +25,10 @@ impl Frames {
         }
     }
 
+    pub fn folder(&self) -> &Folder {
+        &self.folder
+    }
+
     /// Number of frames so far.
     pub fn len(&self) -> usize {
         self.particles.len()
@@ -34,7 +38,7 @@ impl Frames {
     pub fn write(&mut self, sim: &Simulation) -> Result<(), FileError> {
         let number = self.len();
         let particles = Folder::frame("particles", number);
-        write_particles(sim, &self.folder.path().join(&particles))?;
+        write_particles(sim, &self.folder.path().join(&particles), &[], &[])?;
         self.particles.add(sim.time(), &particles)?;
         let mesh = Folder::frame("mesh", number);
         write_mesh(sim, &self.folder.path().join(&mesh))?;
@@ -138,7 +142,13 @@ pub(crate) const NODE_FIELDS: [Field<OfNodes>; 3] = [
     },
 ];
 
-fn write_particles(sim: &Simulation, path: &std::path::Path) -> Result<(), FileError> {
+/// Writes the fields above, those of the models, and `more`.
+pub(super) fn write_particles(
+    sim: &Simulation,
+    path: &std::path::Path,
+    more: &[Array],
+    texts: &[Texts],
+) -> Result<(), FileError> {
     let p = sim.particles();
     let derived = Derived {
         pressure: p.stress.iter().map(mean_pressure).collect(),
@@ -152,8 +162,8 @@ fn write_particles(sim: &Simulation, path: &std::path::Path) -> Result<(), FileE
     let of_models = states
         .iter()
         .map(|(field, values)| Array::new(field.name, Data::F64(values), field.unit));
-    let fields: Vec<Array> = own.chain(of_models).collect();
-    vtu::write_points(path, sim.time(), &p.position, &fields)
+    let fields: Vec<Array> = own.chain(of_models).chain(more.iter().copied()).collect();
+    vtu::write_points(path, sim.time(), &p.position, &fields, texts)
 }
 
 /// The state variables of all models by name; 0 for particles of models that have none of a name.

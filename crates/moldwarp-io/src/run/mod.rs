@@ -5,6 +5,7 @@ mod history;
 mod log;
 mod recorder;
 mod schedule;
+mod stage_files;
 mod state;
 mod whole;
 
@@ -16,6 +17,7 @@ pub(crate) use frames::{Field, NODE_FIELDS, PARTICLE_FIELDS};
 #[cfg(test)]
 pub(crate) use history::FIRST;
 pub(crate) use history::{Expected, columns};
+pub(crate) use stage_files::StageFile;
 pub(crate) use whole::factor as whole_factor;
 
 use crate::mesh::describe_quality;
@@ -154,15 +156,18 @@ pub fn run(
     observer: &mut dyn Observer,
 ) -> Result<Outcome, RunError> {
     let start = Instant::now();
+    let path = match &options.out {
+        Some(path) => path.clone(),
+        None => Folder::default_path(&scene.case),
+    };
+    if let Some(earlier) = &scene.earlier {
+        earlier.keep_from(&path)?;
+    }
     let title = scene.plan.title.clone();
     let scene_hash = scene_hash(&scene.plan);
     let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
     let columns = columns(&sim);
     let expected = Expected::read_all(&scene.compare, &columns)?;
-    let path = match &options.out {
-        Some(path) => path.clone(),
-        None => Folder::default_path(&scene.case),
-    };
     let (folder, replaced) = Folder::prepare(&path, &scene.folder, options.force)?;
 
     let mut notes = scene.notes;
@@ -190,6 +195,7 @@ pub fn run(
     let summary = Summary {
         case: scene.case,
         title,
+        from: scene.earlier.map(|earlier| earlier.given),
         exit: stopped.as_ref().map_or("done".into(), Stop::to_string),
         wall_time: start.elapsed().as_secs_f64(),
         compare,
@@ -267,8 +273,10 @@ fn steps(
         }
         let begun = Instant::now();
         let particles = sim.particles().len();
-        let step = sim.step();
+        let mut stage_file = Ok(());
+        let step = sim.step_and(|sim| stage_file = stage_files::write(sim, recorder.folder()));
         let now = Instant::now();
+        stage_file?;
         if let Err(stop) = step {
             recorder.record_last(sim)?;
             return Ok(Some(stop));

@@ -62,6 +62,10 @@ impl Recorder {
         self.history.finish()
     }
 
+    pub fn folder(&self) -> &Folder {
+        self.frames.folder()
+    }
+
     fn frame(&mut self, sim: &Simulation) -> Result<(), FileError> {
         self.last[0] = Some(sim.steps());
         self.frames.write(sim)

@@ -53,9 +53,11 @@ pub(super) fn volume_group(volume: &Text, mesh: &Mesh) -> Result<usize, Fault> {
     let names = mesh.volume_groups.iter().map(|g| g.name.as_str());
     let group = find(placed(volume), "volume", "volumes of the mesh", names)?;
     if mesh.volume_groups[group].elements.is_empty() {
-        return Err(Fault::new(format!("volume `{}` is empty", volume.get_ref()))
-            .at(volume.span(), "has no elements")
-            .help("choose another volume, or mesh this one"));
+        return Err(
+            Fault::new(format!("volume `{}` is empty", volume.get_ref()))
+                .at(volume.span(), "has no elements")
+                .help("choose another volume, or mesh this one"),
+        );
     }
     Ok(group)
 }

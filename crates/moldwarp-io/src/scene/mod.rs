@@ -9,6 +9,7 @@ mod bodies;
 mod boundaries;
 mod cylinder;
 mod document;
+mod earlier;
 mod error;
 mod functions;
 mod initial_stress;
@@ -33,6 +34,7 @@ mod units;
 mod unsupported;
 mod values;
 
+pub use earlier::{Earlier, inherit};
 pub(crate) use error::Fault;
 pub use error::SceneError;
 pub use output::{Compare, Every, OutputSettings};
@@ -43,7 +45,7 @@ pub(crate) use {quantity::dimensions, unsupported::later};
 
 use moldwarp::particles::SeedingError;
 use moldwarp::step::TimeStepError;
-use moldwarp::{Plan, SetupError};
+use moldwarp::{Particles, Plan, SetupError};
 use presence::Presence;
 use quantity::Dimension;
 use raw::RawScene;
@@ -69,6 +71,8 @@ pub struct Scene {
     pub notes: Vec<String>,
     /// The mesh file's tags of the elements, in their order; none if the mesh was generated.
     pub element_tags: Vec<u64>,
+    /// The earlier run from which bodies have their particles, if there is one.
+    pub earlier: Option<Earlier>,
     /// For messages that come up later.
     pub(crate) origin: Origin,
 }
@@ -101,6 +105,7 @@ impl Origin {
             (SetupError::Seeding(SeedingError::Overlap { first, second, .. }), _) => {
                 self.overlap(first, second)
             }
+            (SetupError::Inherited(error), _) => earlier::explain(error),
             (SetupError::ProbeOfChange { probe, .. } | SetupError::ProbeOfNothing { probe }, _) => {
                 self.lost(error, probe)
             }
@@ -277,6 +282,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             loads,
             probes,
             initial_stress,
+            inherited: Particles::default(),
             numerics,
             stages,
         },
@@ -287,6 +293,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         text: text.to_owned(),
         notes,
         element_tags,
+        earlier: None,
         origin: Origin {
             time_step: values::span(&raw.numerics.time_step),
             initial_stress: values::span(&raw.initial_stress),

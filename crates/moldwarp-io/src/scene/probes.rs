@@ -138,16 +138,16 @@ fn check_volume(
     target: Target,
 ) -> Result<(), Fault> {
     match (quantity, target) {
-        (Quantity::Volume, Target::Surface(_) | Target::Point(_)) => {
-            Err(Fault::new("only bodies and volumes of the mesh have a volume")
-                .at(place, "this probe has none")
-                .help("give the probe a `body`, or a `volume` of the mesh"))
-        }
-        (other, Target::Volume(_)) if other != Quantity::Volume => {
-            Err(Fault::new("of a volume of the mesh only `volume` is measured")
-                .at(place, "not this")
-                .help("quantities = [\"volume\"]; all else is of a body, a surface or a point"))
-        }
+        (Quantity::Volume, Target::Surface(_) | Target::Point(_)) => Err(Fault::new(
+            "only bodies and volumes of the mesh have a volume",
+        )
+        .at(place, "this probe has none")
+        .help("give the probe a `body`, or a `volume` of the mesh")),
+        (other, Target::Volume(_)) if other != Quantity::Volume => Err(Fault::new(
+            "of a volume of the mesh only `volume` is measured",
+        )
+        .at(place, "not this")
+        .help("quantities = [\"volume\"]; all else is of a body, a surface or a point")),
         _ => Ok(()),
     }
 }

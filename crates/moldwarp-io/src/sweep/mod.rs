@@ -9,6 +9,8 @@ pub use folder::SweepFolder;
 pub use table::{End, Table, extremes};
 pub use values::Variation;
 
+pub(crate) use names::safe;
+
 use crate::output::Folder;
 use std::path::PathBuf;
 

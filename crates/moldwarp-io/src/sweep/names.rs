@@ -32,7 +32,7 @@ fn key(variation: &Variation, all: &[Variation]) -> String {
 
 /// Letters, digits, `.`, `_` and signs stay, all between them becomes one `-`. So a negative number
 /// keeps its sign: `gravity-0-0--9.81`.
-fn safe(text: &str) -> String {
+pub(crate) fn safe(text: &str) -> String {
     let mut safe = String::new();
     let mut gap = false;
     for c in text.chars() {

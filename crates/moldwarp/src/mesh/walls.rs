@@ -145,9 +145,8 @@ mod tests {
             corners.iter().all(|x| x.x == 2.0 && x.z <= most)
         };
         let faces = || {
-            let faces = (0..mesh.tets.len() as u32).flat_map(|element| {
-                (0..4).map(move |local| Face { element, local })
-            });
+            let faces = (0..mesh.tets.len() as u32)
+                .flat_map(|element| (0..4).map(move |local| Face { element, local }));
             faces.filter(|f| mesh.neighbours[f.element as usize][f.local as usize] != NONE)
         };
         let whole = Walls::new(&mesh, faces().filter(|f| in_plane(f, 2.0)));

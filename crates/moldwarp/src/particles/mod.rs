@@ -1,9 +1,11 @@
 //! Material points: a structure of arrays, ordered by the element they are in.
 
+pub(crate) mod inherited;
 pub mod initial_stress;
 mod order;
 mod seeding;
 
+pub use inherited::InheritedError;
 pub use initial_stress::{InitialStress, InitialStressError};
 pub use order::Order;
 pub use seeding::{Seed, SeedingError, check_overlap, particles, seeds};
@@ -95,7 +97,7 @@ impl Particles {
     }
 
     /// Keeps those whose place is marked, in their order.
-    pub(crate) fn retain(&mut self, keep: &[bool]) {
+    pub fn retain(&mut self, keep: &[bool]) {
         retain(&mut self.id, keep);
         retain(&mut self.body, keep);
         retain(&mut self.element, keep);

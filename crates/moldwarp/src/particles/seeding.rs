@@ -58,11 +58,15 @@ pub struct Seed {
     point: u8,
 }
 
-/// The seeds of all bodies in the mesh at the start, ordered by element. So every particle has its id
+/// The seeds of all bodies that are to have any in the mesh at the start, ordered by element. So every particle has its id
 /// before there is any, whenever its body comes.
-pub fn seeds(mesh: &Mesh, bodies: &[Body]) -> Result<Vec<Seed>, SeedingError> {
+pub fn seeds(
+    mesh: &Mesh,
+    bodies: &[Body],
+    wanted: impl Fn(usize) -> bool,
+) -> Result<Vec<Seed>, SeedingError> {
     let mut found = Vec::new();
-    for (b, body) in bodies.iter().enumerate() {
+    for (b, body) in bodies.iter().enumerate().filter(|b| wanted(b.0)) {
         let before = found.len();
         fill(mesh, body, b as u16, &mut found);
         if found.len() == before {

@@ -115,6 +115,7 @@ mod tests {
             loads: vec![],
             probes: vec![],
             initial_stress: None,
+            inherited: Default::default(),
             numerics: Numerics::default(),
             stages: vec![Stage::new("run", Until::Steps(1000))],
         };

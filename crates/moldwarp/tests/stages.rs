@@ -148,7 +148,8 @@ fn an_absorbing_bottom_takes_over_what_a_roller_has_held() {
     assert!(greatest_displacement(&sim) < 1e-6 * settled);
 }
 
-/// A face that a pressure of the initial stress holds stays; a tenth less, and it moves.
+/// A face that a pressure of the initial stress holds stays: on a mesh that follows the layers no
+/// particle is faster than 1e-10 √(gH) in 100 steps. With a tenth less it moves.
 #[test]
 fn a_face_held_by_its_initial_stress_stays() {
     for (factor, moves) in [(1.0, false), (0.9, true)] {
@@ -192,13 +193,16 @@ fn a_face_held_by_its_initial_stress_stays() {
         };
         plan.stages[0].levels = vec![(Level::Load(0), ramp), (Level::Load(1), ramp)];
         plan.stages[0].until = Until::Steps(100);
-        let sim = run(plan);
-        assert_eq!(
-            greatest_displacement(&sim) > 1e-9,
-            moves,
-            "{}",
-            greatest_displacement(&sim)
-        );
+        let mut sim = Simulation::new(plan).unwrap();
+        let mut greatest = 0.0f64;
+        while !sim.finished() {
+            sim.step().unwrap();
+            let speeds = sim.particles().velocity.iter().map(|v| v.length());
+            greatest = speeds.fold(greatest, f64::max);
+        }
+        greatest /= (G * 3.0).sqrt();
+        println!("load × {factor}: greatest velocity {greatest:e} √(gH)");
+        assert_eq!(greatest > 1e-10, moves, "{greatest}");
     }
 }
 

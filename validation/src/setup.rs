@@ -60,6 +60,7 @@ pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
         }],
         boundaries: Vec::new(),
         loads: Vec::new(),
+        contacts: Vec::new(),
         probes: Vec::new(),
         initial_stress: None,
         inherited: Default::default(),

@@ -102,6 +102,9 @@ impl Simulation {
         let plan = &self.plan;
         let new = particles(&seeds, &plan.mesh, &plan.bodies, &plan.materials);
         self.particles.append(new);
+        if !self.plan.contacts.is_empty() {
+            self.contacts.measure(&self.plan, &self.particles);
+        }
         self.reorder();
         self.load_added_bodies();
         self.probes.bodies_changed(&self.plan, &self.order.offsets);

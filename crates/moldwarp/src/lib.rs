@@ -9,6 +9,7 @@
 
 mod bodies;
 pub mod boundary;
+pub mod contact;
 pub mod material;
 pub mod measure;
 pub mod mesh;

@@ -1,7 +1,9 @@
 //! What is to be computed: checked, in SI units, every name resolved to a number.
 
+mod contact;
 mod stage;
 
+pub use contact::{Contact, ContactSurface};
 pub use stage::{Equilibrium, Item, Level, Ramp, Stage, Until};
 
 use crate::Vec3;
@@ -24,6 +26,7 @@ pub struct Plan {
     pub bodies: Vec<Body>,
     pub boundaries: Vec<Boundary>,
     pub loads: Vec<Load>,
+    pub contacts: Vec<Contact>,
     pub probes: Vec<Probe>,
     /// Stress before the first stage, if the ground has any.
     pub initial_stress: Option<InitialStress>,

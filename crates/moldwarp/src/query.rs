@@ -115,22 +115,37 @@ impl Simulation {
             reaction: zero,
         };
         for (node, &n) in self.nodes.iter().zip(&self.active.nodes) {
-            // Of a node that a wall splits all sides have the same velocity.
-            fields.velocity[n as usize] = node.grid_velocity;
-            fields.mass[n as usize] += node.mass;
+            // Of all parts of a node the velocity is the mean, by mass.
+            let (velocity, mass) = (
+                &mut fields.velocity[n as usize],
+                &mut fields.mass[n as usize],
+            );
+            *velocity = if *mass > 0.0 {
+                (*velocity * *mass + node.grid_velocity * node.mass) / (*mass + node.mass)
+            } else {
+                node.grid_velocity
+            };
+            *mass += node.mass;
             fields.reaction[n as usize] += node.reaction + node.absorbing;
         }
         fields
     }
 
-    /// Places of a mesh node's parts that particles touch; more than one if a wall splits it.
+    /// Places of a mesh node's parts that particles touch; more than one if a wall splits it or bodies
+    /// meet there.
     pub(crate) fn slots(&self, mesh_node: u32) -> impl Iterator<Item = usize> + '_ {
-        let grid = self.walls.grid_nodes(&self.plan.mesh, mesh_node);
-        let slots = grid.map(|g| self.active.slot_of_grid[g as usize] as usize);
+        let (mesh, walls) = (&self.plan.mesh, &self.walls);
+        let nodes = walls.count(mesh);
+        let fields = (0..self.fields.count()).map(move |field| field * nodes);
+        let keys = fields.flat_map(move |first| {
+            let grid = walls.grid_nodes(mesh, mesh_node);
+            grid.map(move |g| first + g as usize)
+        });
+        let slots = keys.map(|key| self.active.slot_of_key[key] as usize);
         slots.filter(|&slot| slot < self.nodes.len())
     }
 
-    /// A mesh node, if particles touch it: of a split one the first of its parts, which are all held.
+    /// A mesh node, if particles touch it: the first of its parts if there are more.
     pub(crate) fn node(&self, mesh_node: u32) -> Option<&Node> {
         self.slots(mesh_node).next().map(|slot| &self.nodes[slot])
     }
@@ -165,7 +180,9 @@ impl Simulation {
     pub(crate) fn acceleration_at(&self, p: usize) -> Vec3 {
         let e = self.particles.element[p] as usize;
         let n = self.plan.mesh.barycentric(e, self.particles.position[p]);
-        let corners = self.active.nodes_of_element(e);
+        let cell = self.active.cell(e, self.fields.of(self.particles.body[p]));
+        let cell = cell.expect("the element of a particle is a cell of its field");
+        let corners = self.active.cell_nodes[cell];
         let acceleration = |i: usize| self.nodes[corners[i] as usize].acceleration;
         (0..4).map(|i| acceleration(i) * n[i]).sum()
     }

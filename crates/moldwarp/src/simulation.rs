@@ -5,13 +5,14 @@ use crate::bodies;
 use crate::boundary::{
     Absorbing, Constraints, LoadError, LoadPoint, Surroundings, load_points, surface_nodes,
 };
+use crate::contact::{ContactError, Contacts, Fields};
 use crate::measure::{Ledger, Probes, Scale, Watch};
 use crate::mesh::{Follower, Walls};
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{InheritedError, InitialStressError, Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{Active, CellForce, CellStrain, CellSums, Node, TimeStepError};
+use crate::step::{Active, CellForce, CellStrain, CellSums, Grid, Node, TimeStepError};
 use crate::switches::Switches;
 
 /// Why a plan cannot be computed.
@@ -21,6 +22,8 @@ pub enum SetupError {
     Seeding(#[from] SeedingError),
     #[error(transparent)]
     Inherited(#[from] InheritedError),
+    #[error(transparent)]
+    Contact(#[from] ContactError),
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -141,6 +144,8 @@ pub struct Simulation {
     pub(crate) reserve: Vec<Seed>,
     pub(crate) order: Order,
     pub(crate) walls: Walls,
+    pub(crate) fields: Fields,
+    pub(crate) contacts: Contacts,
     pub(crate) active: Active,
     pub(crate) nodes: Vec<Node>,
     pub(crate) cells: Cells,
@@ -158,7 +163,7 @@ pub struct Simulation {
     pub(crate) switches: Switches,
     pub(crate) watch: Watch,
     pub(crate) scale: Scale,
-    /// Nodes before the last renumbering and their grid nodes, kept so that no step allocates.
+    /// Nodes before the last renumbering and their keys, kept so that no step allocates.
     spare_nodes: Vec<Node>,
     spare_numbers: Vec<u32>,
 }
@@ -172,7 +177,9 @@ impl Simulation {
         check_reactions(&plan)?;
         let (mut particles, reserve) = bodies::at_the_start(&plan)?;
         let mut order = Order::default();
-        order.sort(&mut particles, plan.mesh.tets.len());
+        let fields = Fields::new(plan.bodies.len(), &plan.contacts);
+        order.sort(&mut particles, plan.mesh.tets.len(), &fields);
+        let contacts = Contacts::new(&plan, &fields, &particles, &order.offsets)?;
         let loads = ground(&plan, &mut particles, &order.offsets)?;
         let probes = Probes::new(&plan, &particles, &order.offsets);
         let elasticity = plan
@@ -188,6 +195,8 @@ impl Simulation {
             reserve,
             order,
             walls: Walls::default(),
+            fields,
+            contacts,
             active: Active::default(),
             nodes: Vec::new(),
             cells: Cells::default(),
@@ -284,7 +293,7 @@ impl Simulation {
     /// Sorts particles by element and numbers the active cells and nodes anew.
     pub(crate) fn reorder(&mut self) {
         self.order
-            .sort(&mut self.particles, self.plan.mesh.tets.len());
+            .sort(&mut self.particles, self.plan.mesh.tets.len(), &self.fields);
         for point in &mut self.loads {
             point.particle = self.order.destination[point.particle as usize];
         }
@@ -295,13 +304,19 @@ impl Simulation {
     pub(crate) fn activate(&mut self) {
         // The last drift of nodes that stay active is still needed for its work.
         std::mem::swap(&mut self.nodes, &mut self.spare_nodes);
-        std::mem::swap(&mut self.active.grid, &mut self.spare_numbers);
-        let (mesh, walls) = (&self.plan.mesh, &self.walls);
-        self.active.rebuild(mesh, walls, &self.order.offsets);
+        std::mem::swap(&mut self.active.keys, &mut self.spare_numbers);
+        let grid = Grid {
+            mesh: &self.plan.mesh,
+            walls: &self.walls,
+            fields: &self.fields,
+        };
+        let (offsets, bodies) = (&self.order.offsets, &self.particles.body);
+        self.active.rebuild(&grid, offsets, bodies);
+        self.contacts.find(&self.active);
         self.nodes.clear();
         self.nodes.resize(self.active.nodes.len(), Node::default());
-        for (node, &grid) in self.spare_nodes.iter().zip(&self.spare_numbers) {
-            let slot = self.active.slot_of_grid.get(grid as usize);
+        for (node, &key) in self.spare_nodes.iter().zip(&self.spare_numbers) {
+            let slot = self.active.slot_of_key.get(key as usize);
             if let Some(new) = slot.and_then(|&s| self.nodes.get_mut(s as usize)) {
                 *new = *node;
             }

@@ -76,6 +76,7 @@ fn ground(bottom: BoundaryKind, change: impl Fn(&mut Stage)) -> Plan {
             boundary(&mesh, "bottom", &["z-min"], bottom),
         ],
         loads: vec![],
+        contacts: vec![],
         inherited: Default::default(),
         probes: vec![Probe {
             name: "bottom".into(),

@@ -57,6 +57,7 @@ fn column(bottom: BoundaryKind, cells: usize, stages: Vec<Stage>) -> Plan {
             boundary("bottom", &["z-min"], bottom),
         ],
         loads: vec![],
+        contacts: vec![],
         probes: vec![],
         initial_stress: None,
         inherited: Particles::default(),

@@ -48,6 +48,7 @@ fn plan(split: Split, mass: MassMatrix) -> Plan {
             kind: BoundaryKind::Roller,
         }],
         loads: vec![],
+        contacts: vec![],
         probes: vec![],
         initial_stress: None,
         inherited: Default::default(),

@@ -61,6 +61,7 @@ fn ground(bottom: BoundaryKind) -> Plan {
             boundary(&mesh, "bottom", &["z-min"], bottom),
         ],
         loads: vec![],
+        contacts: vec![],
         probes: vec![],
         initial_stress: Some(InitialStress {
             k0: vec![Some(0.5), Some(0.4)],

@@ -63,6 +63,7 @@ fn halves(below: bool) -> Plan {
         bodies,
         boundaries,
         loads: vec![],
+        contacts: vec![],
         probes: vec![Probe {
             name: "wall".into(),
             target: Target::Surface(mesh.surface("wall").unwrap()),

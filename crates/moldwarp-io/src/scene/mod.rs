@@ -280,6 +280,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             bodies,
             boundaries,
             loads,
+            contacts: Vec::new(),
             probes,
             initial_stress,
             inherited: Particles::default(),

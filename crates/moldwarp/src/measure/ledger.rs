@@ -80,6 +80,10 @@ pub struct Energies {
     pub damping: f64,
     /// Taken by absorbing boundaries: dissipated in dashpots, stored in springs.
     pub absorbed: f64,
+    /// Dissipated by friction between bodies.
+    pub friction: f64,
+    /// Taken by impulses along the normals of contacts.
+    pub contact: f64,
     /// Σ ½ m_p v_p² of particles that stages have taken away; those added come at rest. All other kinds
     /// are works, so what a removed body has stored stays in `elastic` and `gravity`.
     pub removed: f64,
@@ -97,7 +101,7 @@ pub struct Energies {
 
 impl Energies {
     /// Names in the order of [`Energies::values`].
-    pub const NAMES: [&'static str; 15] = [
+    pub const NAMES: [&'static str; 17] = [
         "kinetic",
         "kinetic_grid",
         "elastic",
@@ -105,6 +109,8 @@ impl Energies {
         "load",
         "prescribed",
         "plastic",
+        "friction",
+        "contact",
         "damping",
         "absorbed",
         "removed",
@@ -115,7 +121,7 @@ impl Energies {
         "residual",
     ];
 
-    pub fn values(&self) -> [f64; 15] {
+    pub fn values(&self) -> [f64; 17] {
         [
             self.kinetic,
             self.kinetic_grid,
@@ -124,6 +130,8 @@ impl Energies {
             self.load,
             self.prescribed,
             self.plastic,
+            self.friction,
+            self.contact,
             self.damping,
             self.absorbed,
             self.removed,
@@ -145,6 +153,8 @@ impl Energies {
             load: self.load * factor,
             prescribed: self.prescribed * factor,
             plastic: self.plastic * factor,
+            friction: self.friction * factor,
+            contact: self.contact * factor,
             damping: self.damping * factor,
             absorbed: self.absorbed * factor,
             removed: self.removed * factor,
@@ -190,6 +200,8 @@ impl Ledger {
             + now.damping
             + now.absorbed
             + now.removed
+            + now.friction
+            + now.contact
             + now.transfer
             + now.smoothing
             + now.integration
@@ -234,6 +246,12 @@ impl Ledger {
         self.now.plastic += plastic;
         self.now.smoothing += smoothed_out;
         self.now.advection -= elastic + smoothed_out + plastic;
+    }
+
+    /// Half a drift's work of contact forces: [along normals, along surfaces].
+    pub(crate) fn contact_work(&mut self, [normal, tangential]: [f64; 2]) {
+        self.now.contact -= normal;
+        self.now.friction -= tangential;
     }
 
     /// Σ m_p g · Δx_p of a drift.
@@ -292,6 +310,8 @@ impl Ledger {
             e.damping,
             e.absorbed,
             e.removed,
+            e.friction,
+            e.contact,
         ];
         let turned = 0.5 * physical.iter().map(|e| e.abs()).sum::<f64>();
         self.turned_over = self.turned_over.max(turned);

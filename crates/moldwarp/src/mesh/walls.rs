@@ -90,14 +90,27 @@ impl Walls {
 
     /// Volume of the elements around a grid node, m³.
     pub fn volume(&self, mesh: &Mesh, grid: u32) -> f64 {
-        let first = self.around.partition_point(|a| a.0 < grid);
-        let own = self.around[first..].iter().take_while(|a| a.0 == grid);
-        let mut volumes = own.map(|a| mesh.volumes[a.1 as usize]).peekable();
-        if volumes.peek().is_some() {
-            volumes.sum()
-        } else {
-            mesh.node_volumes[grid as usize]
+        match self.split_around(grid) {
+            [] => mesh.node_volumes[grid as usize],
+            own => own.iter().map(|a| mesh.volumes[a.1 as usize]).sum(),
         }
+    }
+
+    /// The elements around a grid node.
+    pub fn elements(&self, mesh: &Mesh, grid: u32) -> impl Iterator<Item = u32> {
+        let split = self.split_around(grid);
+        let whole = match split {
+            [] => mesh.attached(grid),
+            _ => &[],
+        };
+        split.iter().map(|a| a.1).chain(whole.iter().map(|a| a.0))
+    }
+
+    /// The grid node with each element around it if it is part of a split node, else nothing.
+    fn split_around(&self, grid: u32) -> &[(u32, u32)] {
+        let first = self.around.partition_point(|a| a.0 < grid);
+        let count = self.around[first..].partition_point(|a| a.0 == grid);
+        &self.around[first..first + count]
     }
 }
 

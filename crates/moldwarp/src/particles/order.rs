@@ -1,7 +1,8 @@
-//! Keeping particles ordered by element.
+//! Keeping particles ordered by element, and within it by velocity field.
 
 use super::Particles;
 use crate::Vec3;
+use crate::contact::Fields;
 use crate::material::State;
 use crate::tensor::Voigt;
 
@@ -21,24 +22,35 @@ pub struct Order {
 }
 
 impl Order {
-    /// Sorts by element, keeping the order within each (a counting sort).
-    pub fn sort(&mut self, particles: &mut Particles, elements: usize) {
+    /// Sorts by element and field, keeping the order within each (a counting sort).
+    pub fn sort(&mut self, particles: &mut Particles, elements: usize, fields: &Fields) {
+        let key = |e: u32, body: u16| e as usize * fields.count() + fields.of(body);
+        let keys = elements * fields.count();
+        let by_place = || particles.element.iter().zip(&particles.body);
         self.offsets.clear();
-        self.offsets.resize(elements + 1, 0);
-        for &e in &particles.element {
-            self.offsets[e as usize + 1] += 1;
+        self.offsets.resize(keys + 1, 0);
+        for (&e, &body) in by_place() {
+            self.offsets[key(e, body) + 1] += 1;
         }
-        for e in 0..elements {
-            self.offsets[e + 1] += self.offsets[e];
+        for k in 0..keys {
+            self.offsets[k + 1] += self.offsets[k];
         }
         self.destination.resize(particles.len(), 0);
-        for (p, &e) in particles.element.iter().enumerate() {
-            let next = &mut self.offsets[e as usize];
+        for (p, (&e, &body)) in by_place().enumerate() {
+            let next = &mut self.offsets[key(e, body)];
             self.destination[p] = *next;
             *next += 1;
         }
-        // Each offset has moved on to the next element's; move them back.
-        self.offsets.copy_within(0..elements, 1);
+        // Each offset has moved on to the next key's; the last one of an element is now where the
+        // next element begins.
+        if fields.count() == 1 {
+            self.offsets.copy_within(0..elements, 1);
+        } else {
+            for e in 0..elements {
+                self.offsets[e + 1] = self.offsets[(e + 1) * fields.count() - 1];
+            }
+        }
+        self.offsets.truncate(elements + 1);
         self.offsets[0] = 0;
         let to = &self.destination;
         permute(to, &mut particles.id, &mut self.indices);

@@ -1,11 +1,43 @@
 //! The part of the mesh that does work: cells and nodes that particles touch.
 //!
 //! A *cell* is an element that holds particles, or an empty one whose four nodes all belong to
-//! such elements (it may count as filled). Cells and their nodes are numbered compactly, in the
+//! such elements (it may count as filled); an element with particles of several velocity fields is
+//! a cell for each. Cells and their nodes are numbered compactly, in the
 //! mesh's order, so that the step never looks at the rest. Nodes are grid nodes: a mesh node that is
-//! split by a wall has one on each side (`mesh/walls.rs`).
+//! split by a wall has one on each side (`mesh/walls.rs`), and each of these one for every field that
+//! it moves with (`contact`).
 
+use crate::contact::Fields;
 use crate::mesh::{Mesh, NONE, Walls};
+use std::ops::Range;
+
+/// What cells and nodes are made of.
+pub struct Grid<'a> {
+    pub mesh: &'a Mesh,
+    pub walls: &'a Walls,
+    pub fields: &'a Fields,
+}
+
+impl Grid<'_> {
+    /// Field and first of each run of particles of one field among those of an element.
+    fn runs(
+        &self,
+        mut inside: Range<usize>,
+        bodies: &[u16],
+    ) -> impl Iterator<Item = (usize, usize)> {
+        std::iter::from_fn(move || {
+            let start = inside.next()?;
+            let field = self.fields.of(bodies[start]);
+            if self.fields.count() == 1 {
+                inside.start = inside.end;
+            }
+            while !inside.is_empty() && self.fields.of(bodies[inside.start]) == field {
+                inside.start += 1;
+            }
+            Some((field, start))
+        })
+    }
+}
 
 /// Compact numbering of cells and nodes.
 #[derive(Clone, Debug, Default)]
@@ -16,14 +48,18 @@ pub struct Active {
     pub offsets: Vec<u32>,
     /// The four nodes of each cell, as compact numbers.
     pub cell_nodes: Vec<[u32; 4]>,
-    /// Mesh node of each node; ascending but for those beyond a wall, which come last.
+    /// Mesh node of each node.
     pub nodes: Vec<u32>,
-    /// Grid node of each node, ascending.
-    pub grid: Vec<u32>,
-    /// Compact number of each grid node, or [`NONE`].
-    pub slot_of_grid: Vec<u32>,
-    /// Cell of each element, or [`NONE`].
+    /// Field times number of grid nodes plus grid node of each node, ascending.
+    pub keys: Vec<u32>,
+    /// Compact number of each key, or [`NONE`].
+    pub slot_of_key: Vec<u32>,
+    /// Field of each cell.
+    pub fields: Vec<u8>,
+    /// First cell of each element, or [`NONE`]; those of its other fields follow.
     pub cell_of_element: Vec<u32>,
+    /// Number of grid nodes of the mesh.
+    pub grid_nodes: usize,
     node_offsets: Vec<u32>,
     node_cells: Vec<(u32, u8)>,
 }
@@ -35,10 +71,26 @@ impl Active {
         &self.node_cells[self.node_offsets[slot] as usize..self.node_offsets[slot + 1] as usize]
     }
 
-    /// The nodes of an element that is a cell.
+    /// The cell of an element and a field, if there is one.
     #[inline]
-    pub fn nodes_of_element(&self, e: usize) -> [u32; 4] {
-        self.cell_nodes[self.cell_of_element[e] as usize]
+    pub fn cell(&self, e: usize, field: usize) -> Option<usize> {
+        let first = self.cell_of_element[e] as usize;
+        let own = |&c: &usize| self.elements[c] as usize == e;
+        (first..self.elements.len())
+            .take_while(own)
+            .find(|&c| usize::from(self.fields[c]) == field)
+    }
+
+    /// Whether an element holds particles, but none of this field.
+    pub fn is_foreign(&self, e: usize, field: usize) -> bool {
+        let first = self.cell_of_element[e] as usize;
+        let occupied = first < self.elements.len() && self.offsets[first] < self.offsets[first + 1];
+        occupied && self.cell(e, field).is_none()
+    }
+
+    /// Field of a node.
+    pub fn field(&self, slot: usize) -> usize {
+        self.keys[slot] as usize / self.grid_nodes
     }
 
     /// Whether there is no wall between two neighbours.
@@ -49,53 +101,70 @@ impl Active {
     }
 
     /// Numbers cells and nodes anew from the first particle of each element.
-    pub fn rebuild(&mut self, mesh: &Mesh, walls: &Walls, particle_offsets: &[u32]) {
-        let tets = walls.tets(mesh);
-        let occupied = |e: usize| particle_offsets[e] < particle_offsets[e + 1];
-        self.slot_of_grid.clear();
-        self.slot_of_grid.resize(walls.count(mesh), NONE);
-        self.cell_of_element.clear();
-        self.cell_of_element.resize(mesh.tets.len(), NONE);
+    pub fn rebuild(&mut self, grid: &Grid, particle_offsets: &[u32], bodies: &[u16]) {
+        let tets = grid.walls.tets(grid.mesh);
+        let nodes = grid.walls.count(grid.mesh);
+        let fields = grid.fields.count();
+        let key = |field: usize, n: u32| field * nodes + n as usize;
+        self.grid_nodes = nodes;
+        self.slot_of_key.clear();
+        self.slot_of_key.resize(fields * nodes, NONE);
         let touched = 0;
-        for e in (0..mesh.tets.len()).filter(|&e| occupied(e)) {
-            self.cell_of_element[e] = touched;
-            for &n in &tets[e] {
-                self.slot_of_grid[n as usize] = touched;
-            }
-        }
+        let inside = |e: usize| particle_offsets[e] as usize..particle_offsets[e + 1] as usize;
         for (e, tet) in tets.iter().enumerate() {
-            if tet.iter().all(|&n| self.slot_of_grid[n as usize] != NONE) {
-                self.cell_of_element[e] = touched;
-            }
-        }
-        self.number(mesh, walls, particle_offsets);
-        self.attach();
-    }
-
-    fn number(&mut self, mesh: &Mesh, walls: &Walls, particle_offsets: &[u32]) {
-        let tets = walls.tets(mesh);
-        self.nodes.clear();
-        self.grid.clear();
-        for (n, slot) in self.slot_of_grid.iter_mut().enumerate() {
-            if *slot != NONE {
-                *slot = self.nodes.len() as u32;
-                self.nodes.push(walls.mesh_node(mesh, n as u32));
-                self.grid.push(n as u32);
+            for (field, _) in grid.runs(inside(e), bodies) {
+                for &n in tet {
+                    self.slot_of_key[key(field, n)] = touched;
+                }
             }
         }
         self.elements.clear();
         self.offsets.clear();
+        self.fields.clear();
+        self.cell_of_element.clear();
+        for (e, tet) in tets.iter().enumerate() {
+            let first = self.elements.len();
+            let occupied = inside(e);
+            for (field, start) in grid.runs(occupied.clone(), bodies) {
+                self.push(e, field, start);
+            }
+            for field in (0..fields).filter(|_| occupied.is_empty()) {
+                let all = |n: &u32| self.slot_of_key[key(field, *n)] != NONE;
+                if tet.iter().all(all) {
+                    self.push(e, field, occupied.start);
+                }
+            }
+            let any = self.elements.len() > first;
+            self.cell_of_element
+                .push(if any { first as u32 } else { NONE });
+        }
+        self.offsets.push(particle_offsets[tets.len()]);
+        self.number(grid, nodes);
         self.cell_nodes.clear();
-        for (e, (cell, tet)) in self.cell_of_element.iter_mut().zip(tets).enumerate() {
-            if *cell != NONE {
-                *cell = self.elements.len() as u32;
-                self.elements.push(e as u32);
-                self.offsets.push(particle_offsets[e]);
-                self.cell_nodes
-                    .push(tet.map(|n| self.slot_of_grid[n as usize]));
+        for (&e, &field) in self.elements.iter().zip(&self.fields) {
+            let slot = |n: u32| self.slot_of_key[key(usize::from(field), n)];
+            self.cell_nodes.push(tets[e as usize].map(slot));
+        }
+        self.attach();
+    }
+
+    fn push(&mut self, e: usize, field: usize, start: usize) {
+        self.elements.push(e as u32);
+        self.offsets.push(start as u32);
+        self.fields.push(field as u8);
+    }
+
+    fn number(&mut self, grid: &Grid, nodes: usize) {
+        self.nodes.clear();
+        self.keys.clear();
+        for (key, slot) in self.slot_of_key.iter_mut().enumerate() {
+            if *slot != NONE {
+                *slot = self.nodes.len() as u32;
+                let node = grid.walls.mesh_node(grid.mesh, (key % nodes) as u32);
+                self.nodes.push(node);
+                self.keys.push(key as u32);
             }
         }
-        self.offsets.push(particle_offsets[mesh.tets.len()]);
     }
 
     fn attach(&mut self) {
@@ -138,7 +207,14 @@ mod tests {
             offsets[e + 1] = offsets[e] + u32::from(e != hole);
         }
         let mut active = Active::default();
-        active.rebuild(&mesh, &Walls::default(), &offsets);
+        let (walls, fields) = (Walls::default(), Fields::default());
+        let grid = Grid {
+            mesh: &mesh,
+            walls: &walls,
+            fields: &fields,
+        };
+        let bodies = vec![0; mesh.tets.len()];
+        active.rebuild(&grid, &offsets, &bodies);
         assert_eq!(active.elements.len(), mesh.tets.len());
         assert_eq!(active.offsets[hole], active.offsets[hole + 1]);
         for slot in 0..active.nodes.len() {
@@ -148,7 +224,7 @@ mod tests {
         }
         // With particles in one corner only, the rest sleeps.
         let offsets: Vec<u32> = (0..=mesh.tets.len()).map(|e| u32::from(e > 0)).collect();
-        active.rebuild(&mesh, &Walls::default(), &offsets);
+        active.rebuild(&grid, &offsets, &bodies);
         assert_eq!((active.elements.len(), active.nodes.len()), (1, 4));
     }
 }

@@ -22,6 +22,7 @@
 
 mod active;
 mod advance;
+mod contact;
 mod correction;
 mod nodes;
 mod remap;
@@ -33,7 +34,7 @@ mod time_step;
 mod to_nodes;
 mod to_particles;
 
-pub use active::Active;
+pub use active::{Active, Grid};
 pub(crate) use nodes::unheld;
 pub use state::{CellForce, CellStrain, CellSums, Node};
 pub use time_step::TimeStepError;
@@ -113,6 +114,7 @@ mod tests {
             }],
             boundaries: vec![],
             loads: vec![],
+            contacts: vec![],
             probes: vec![],
             initial_stress: None,
             inherited: Default::default(),

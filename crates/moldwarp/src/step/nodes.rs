@@ -1,7 +1,7 @@
 //! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
-use super::{Active, BLOCK, Node};
+use super::{Active, BLOCK, Node, contact};
 use crate::boundary::AbsorbingNode;
 use crate::measure::{DriftWork, Forces};
 use crate::mesh::Mesh;
@@ -25,19 +25,16 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         cells,
         constraints,
         absorbing,
-        ledger,
         gravity,
-        watch,
         ..
     } = sim;
     let (active, mesh, gravity, cells) = (&*active, &plan.mesh, *gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let (work, forces) = fold(items, BLOCK, &|(slots, nodes): (
+    fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let (mut work, mut forces) = (DriftWork::default(), Forces::default());
         for (slot, node) in slots.zip(nodes) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
@@ -77,15 +74,27 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 node.acceleration = constraint.free * node.acceleration + held;
             }
             node.reaction = node.acceleration * node.mass - force;
+        }
+    });
+    contact::kick(sim, before, after);
+    book(sim, before > 0.0);
+}
+
+/// Sums of the forces, and half their work in the last drift if there has been one.
+fn book(sim: &mut Simulation, drifted: bool) {
+    let gravity = sim.gravity;
+    let (work, forces) = fold(&sim.nodes[..], BLOCK, &|nodes: &[Node]| {
+        let (mut work, mut forces) = (DriftWork::default(), Forces::default());
+        for node in nodes.iter().filter(|n| n.mass > 0.0) {
             forces.add(node, gravity);
-            if before > 0.0 {
+            if drifted {
                 work.add(node, gravity);
             }
         }
         (work, forces)
     });
-    ledger.kick(work);
-    watch.forces = forces;
+    sim.ledger.kick(work);
+    sim.watch.forces = forces;
 }
 
 /// −Σ S ∇N_i of a node, N.
@@ -126,6 +135,7 @@ fn apply_loads(sim: &mut Simulation) {
         loads,
         clock,
         switches,
+        fields,
         ..
     } = sim;
     let mesh = &plan.mesh;
@@ -136,7 +146,9 @@ fn apply_loads(sim: &mut Simulation) {
         let load = point.load as usize;
         let factor = switches.load(load, clock.time);
         let force = point.force * (factor * plan.loads[load].function.value(clock.time));
-        for (slot, share) in active.nodes_of_element(e).into_iter().zip(n) {
+        let cell = active.cell(e, fields.of(particles.body[p]));
+        let cell = cell.expect("the element of a particle is a cell of its field");
+        for (slot, share) in active.cell_nodes[cell].into_iter().zip(n) {
             nodes[slot as usize].load += force * share;
         }
     }

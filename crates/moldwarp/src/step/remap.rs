@@ -6,7 +6,7 @@
 //! symmetry is a mirror.
 
 use super::state::moved;
-use super::{BLOCK, Node, correction};
+use super::{BLOCK, Node, contact, correction};
 use crate::Vec3;
 use crate::measure::DriftWork;
 use crate::parallel::fold;
@@ -15,8 +15,12 @@ use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation, dt: f64) {
     average(sim);
+    contact::remap(sim, |node| &mut node.average);
     let theta = correction::exchange(sim, |node| node.average);
-    move_nodes(sim, theta, dt);
+    correct(sim, theta);
+    contact::remap(sim, |node| &mut node.grid_velocity);
+    move_nodes(sim, dt);
+    contact::work(sim);
     let Simulation {
         active,
         nodes,
@@ -64,24 +68,21 @@ fn average(sim: &mut Simulation) {
     });
 }
 
-/// v_i with constraints applied again, Δu_i, and the first half of its work.
-fn move_nodes(sim: &mut Simulation, theta: f64, dt: f64) {
+/// v_i with constraints applied again.
+fn correct(sim: &mut Simulation, theta: f64) {
     let Simulation {
         active,
         nodes,
         cells,
         constraints,
-        ledger,
-        gravity,
         ..
     } = sim;
-    let (active, sums, constraints, gravity) = (&*active, &cells.sums[..], &*constraints, *gravity);
+    let (active, sums, constraints) = (&*active, &cells.sums[..], &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
-    let work = fold(items, BLOCK, &|(slots, nodes): (
+    fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let mut work = DriftWork::default();
         for (slot, node) in slots.zip(nodes) {
             node.grid_velocity = node.average;
             node.grid_velocity += correction::change(theta, slot, node.mass, active, sums);
@@ -89,6 +90,22 @@ fn move_nodes(sim: &mut Simulation, theta: f64, dt: f64) {
                 node.grid_velocity =
                     constraint.free * node.grid_velocity + constraints.prescribed(constraint);
             }
+        }
+    });
+}
+
+/// Δu_i, and the first half of its work.
+fn move_nodes(sim: &mut Simulation, dt: f64) {
+    let Simulation {
+        nodes,
+        ledger,
+        gravity,
+        ..
+    } = sim;
+    let gravity = *gravity;
+    let work = fold(&mut nodes[..], BLOCK, &|nodes: &mut [Node]| {
+        let mut work = DriftWork::default();
+        for node in nodes {
             node.moved = node.grid_velocity * dt;
             work.add(node, gravity);
         }

@@ -97,7 +97,7 @@ impl CellForce {
 /// Displacements in the last drift by mesh node, m; zero where no particle is near.
 pub(super) fn moved<'a>(active: &'a Active, nodes: &'a [Node]) -> impl Fn(u32) -> Vec3 + 'a {
     |mesh_node| {
-        let slot = active.slot_of_grid[mesh_node as usize] as usize;
+        let slot = active.slot_of_key[mesh_node as usize] as usize;
         nodes.get(slot).map_or(Vec3::ZERO, |node| node.moved)
     }
 }

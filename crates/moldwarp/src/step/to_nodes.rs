@@ -79,12 +79,15 @@ fn sum_nodes(sim: &mut Simulation) {
     let Simulation {
         plan,
         walls,
+        contacts,
         active,
         nodes,
         cells,
         ..
     } = sim;
-    let (active, sums, mesh, walls) = (&*active, &cells.sums, &plan.mesh, &*walls);
+    let (active, sums, mesh) = (&*active, &cells.sums, &plan.mesh);
+    let (walls, contacts) = (&*walls, &*contacts);
+    let grid_nodes = walls.count(mesh) as u32;
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
@@ -99,7 +102,15 @@ fn sum_nodes(sim: &mut Simulation) {
                 volume += sum.solid;
                 all_mass += sum.mass[0] + sum.mass[1] + sum.mass[2] + sum.mass[3];
             }
-            let whole = walls.volume(mesh, active.grid[slot]);
+            let grid = active.keys[slot] % grid_nodes;
+            let mut whole = walls.volume(mesh, grid);
+            if contacts.meets(slot) {
+                // Elements that other fields fill do not make a field less full.
+                let field = (active.keys[slot] / grid_nodes) as usize;
+                let around = walls.elements(mesh, grid);
+                let foreign = around.filter(|&e| active.is_foreign(e as usize, field));
+                whole -= foreign.map(|e| mesh.volumes[e as usize]).sum::<f64>();
+            }
             node.mass = mass;
             node.velocity = if mass > 0.0 {
                 momentum / mass
@@ -179,10 +190,10 @@ fn mean_stress(c: usize, active: &super::Active, mesh: &crate::Mesh, sums: &[Cel
             .iter()
             .filter(|&&n| n != NONE)
         {
-            let other = active.cell_of_element[neighbour as usize] as usize;
-            if let Some(other) = sums.get(other).filter(|_| active.share_a_face(c, other)) {
-                add_scaled(&mut stress, &other.stress, 1.0);
-                volume += other.volume;
+            let other = active.cell(neighbour as usize, usize::from(active.fields[c]));
+            if let Some(other) = other.filter(|&other| active.share_a_face(c, other)) {
+                add_scaled(&mut stress, &sums[other].stress, 1.0);
+                volume += sums[other].volume;
             }
         }
     }

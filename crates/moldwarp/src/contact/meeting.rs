@@ -1,0 +1,335 @@
+//! Two bodies at a node: impulses that keep them apart and rub them.
+//!
+//! With the velocities v_a, v_b that the bodies would have at the node, masses m_a, m_b and the unit
+//! normal n from a to b, the bodies approach at r = (v_a − v_b) · n. They may close the gap that is
+//! between them, r ≤ gap/Δt. What is beyond is stopped (Jassim et al. Eq. 10–14 in impulses):
+//!
+//!   J_n = m (r − gap/Δt) ≥ 0,   m = m_a m_b / (m_a + m_b),
+//!   |J_t| = min(m |Δv_t|, μ J_n + c_a A h),
+//!
+//! on b, and against it on a. The reduced mass m is small where one of the bodies hardly supports the
+//! node, so the impulses are bounded there though accelerations F/m are not. Where faces of the
+//! structure meet at an edge or corner, each has its own normal, and all are satisfied.
+
+use crate::{Mat3, Vec3};
+
+/// Most normals of a node.
+pub const NORMALS: usize = 3;
+/// Sweeps over the normals and pairs of a node where there are several.
+const SWEEPS: usize = 20;
+
+/// What bodies do to each other at a node in a kick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum State {
+    #[default]
+    Open,
+    Sliding,
+    Sticking,
+}
+
+/// A pair of bodies at a node.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Meeting {
+    /// Compact numbers of the node in the fields of both; that of a is less.
+    pub slots: [u32; 2],
+    /// Index into the plan's contacts; none if the bodies stick together.
+    pub contact: Option<u32>,
+    /// From a to b; as many as `count`.
+    pub normals: [Vec3; NORMALS],
+    pub count: usize,
+    /// Velocity with which each gap may be closed, m/s.
+    pub allowed: [f64; NORMALS],
+    /// Part of the bodies' common surface, m².
+    pub area: f64,
+    pub state: State,
+    /// Impulses on b in the kick, N s.
+    normal: [f64; NORMALS],
+    tangential: Vec3,
+    /// Forces on b, N.
+    pub normal_force: Vec3,
+    pub friction: Vec3,
+}
+
+/// Friction and adhesion of a pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Strength {
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Most that adhesion can give in the kick, N s.
+    pub adhesion: f64,
+}
+
+/// The node of a body: mass, kg, and velocity at the end of the kick, m/s.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Mass {
+    pub mass: f64,
+    pub velocity: Vec3,
+}
+
+impl Meeting {
+    /// A pair of which nothing else is known.
+    pub fn new(slots: [u32; 2], contact: Option<u32>) -> Meeting {
+        Meeting {
+            slots,
+            contact,
+            ..Meeting::default()
+        }
+    }
+
+    /// Corrects both velocities. Impulses are those of the whole kick so far. Says by how much they
+    /// have changed.
+    fn sweep(
+        &mut self,
+        a: &mut Mass,
+        b: &mut Mass,
+        free: &Mat3,
+        strength: Option<Strength>,
+    ) -> f64 {
+        let mass = a.mass * b.mass / (a.mass + b.mass);
+        let mut changed = 0.0;
+        let mut give = |impulse: Vec3| {
+            a.velocity -= impulse / a.mass;
+            b.velocity += impulse / b.mass;
+            changed += impulse.length();
+            a.velocity - b.velocity
+        };
+        let mut relative = give(Vec3::ZERO);
+        let Some(strength) = strength else {
+            let impulse = *free * relative * mass;
+            self.tangential += impulse;
+            self.state = State::Sticking;
+            give(impulse);
+            return changed;
+        };
+        for k in 0..self.count {
+            let n = self.normals[k];
+            let wanted = self.normal[k] + mass * (relative.dot(n) - self.allowed[k]);
+            let change = wanted.max(0.0) - self.normal[k];
+            self.normal[k] += change;
+            relative = give(n * change);
+        }
+        let pressed: f64 = self.normal.iter().sum();
+        if pressed == 0.0 {
+            self.state = State::Open;
+            let undo = -self.tangential;
+            self.tangential = Vec3::ZERO;
+            give(undo);
+            return changed;
+        }
+        let along = self.tangent(*free * relative);
+        let limit = strength.friction * pressed + strength.adhesion;
+        let wanted = self.tangential + along * mass;
+        let size = wanted.length();
+        let kept = if size > limit {
+            self.state = State::Sliding;
+            wanted * (limit / size)
+        } else {
+            self.state = State::Sticking;
+            wanted
+        };
+        let change = kept - self.tangential;
+        self.tangential = kept;
+        give(change);
+        changed
+    }
+
+    /// The part of a vector along all faces.
+    fn tangent(&self, v: Vec3) -> Vec3 {
+        let mut rest = v;
+        let mut directions: [Vec3; NORMALS] = [Vec3::ZERO; NORMALS];
+        for k in 0..self.count {
+            let mut n = self.normals[k];
+            for d in &directions[..k] {
+                n -= *d * d.dot(n);
+            }
+            let n = n.normalize_or_zero();
+            directions[k] = n;
+            rest -= n * n.dot(rest);
+        }
+        rest
+    }
+
+    /// Forces of the kick's impulses.
+    fn settle(&mut self, h: f64) {
+        let normals = self.normals.iter().zip(self.normal);
+        self.normal_force = normals.map(|(n, j)| *n * j).sum::<Vec3>() / h;
+        self.friction = self.tangential / h;
+    }
+
+    /// Corrects the velocities that move the nodes, in the state of the kick: what has stuck moves
+    /// together, what slides does not approach, what is open is left alone.
+    fn move_together(&self, a: &mut Mass, b: &mut Mass, free: &Mat3) {
+        if self.state == State::Open {
+            return;
+        }
+        let share = b.mass / (a.mass + b.mass);
+        let mut give = |change: Vec3| {
+            a.velocity -= change * share;
+            b.velocity += change * (1.0 - share);
+            a.velocity - b.velocity
+        };
+        let mut relative = give(Vec3::ZERO);
+        if self.contact.is_none() {
+            give(*free * relative);
+            return;
+        }
+        for k in 0..self.count {
+            let beyond = relative.dot(self.normals[k]) - self.allowed[k];
+            relative = give(self.normals[k] * beyond.max(0.0));
+        }
+        if self.state == State::Sticking {
+            give(self.tangent(*free * relative));
+        }
+    }
+}
+
+/// Solves all meetings at a grid node for a kick of length `h`. `masses` are those of the fields by
+/// number; `fields` those of each meeting.
+pub fn solve(
+    meetings: &mut [Meeting],
+    fields: impl Fn(&Meeting) -> [usize; 2],
+    masses: &mut [Mass],
+    free: &Mat3,
+    strength: impl Fn(&Meeting) -> Option<Strength>,
+    h: f64,
+) {
+    for meeting in meetings.iter_mut() {
+        (meeting.normal, meeting.tangential) = ([0.0; NORMALS], Vec3::ZERO);
+    }
+    let sweeps = match meetings {
+        [one] if one.count <= 1 => 1,
+        _ => SWEEPS,
+    };
+    for _ in 0..sweeps {
+        let mut changed = 0.0;
+        let mut total = 0.0;
+        for meeting in meetings.iter_mut() {
+            let [i, k] = fields(meeting);
+            let (mut a, mut b) = (masses[i], masses[k]);
+            changed += meeting.sweep(&mut a, &mut b, free, strength(meeting));
+            total += meeting.normal.iter().sum::<f64>() + meeting.tangential.length();
+            (masses[i], masses[k]) = (a, b);
+        }
+        if changed <= 1e-14 * total {
+            break;
+        }
+    }
+    meetings.iter_mut().for_each(|m| m.settle(h));
+}
+
+/// The same for velocities that move the nodes.
+pub fn move_together(
+    meetings: &[Meeting],
+    fields: impl Fn(&Meeting) -> [usize; 2],
+    masses: &mut [Mass],
+    free: &Mat3,
+) {
+    let sweeps = match meetings {
+        [one] if one.count <= 1 => 1,
+        _ => SWEEPS,
+    };
+    for _ in 0..sweeps {
+        for meeting in meetings {
+            let [i, k] = fields(meeting);
+            let (mut a, mut b) = (masses[i], masses[k]);
+            meeting.move_together(&mut a, &mut b, free);
+            (masses[i], masses[k]) = (a, b);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair(friction: f64, v: Vec3) -> (Meeting, [Mass; 2]) {
+        let mut meeting = Meeting {
+            contact: Some(0),
+            count: 1,
+            ..Meeting::default()
+        };
+        meeting.normals[0] = Vec3::Z;
+        let mut masses = [
+            Mass {
+                mass: 2.0,
+                velocity: v,
+            },
+            Mass {
+                mass: 3.0,
+                velocity: Vec3::ZERO,
+            },
+        ];
+        let strength = Strength {
+            friction,
+            adhesion: 0.0,
+        };
+        let mut one = [meeting];
+        solve(
+            &mut one,
+            |_| [0, 1],
+            &mut masses,
+            &Mat3::IDENTITY,
+            |_| Some(strength),
+            0.1,
+        );
+        (one[0], masses)
+    }
+
+    /// m = 1.2 kg: J_n = 1.2 r, friction at most μ J_n, momentum as before.
+    #[test]
+    fn two_masses_meet() {
+        let v = Vec3::new(1.0, 0.0, 0.5);
+        let (meeting, [a, b]) = pair(0.5, v);
+        assert_eq!(meeting.state, State::Sliding);
+        assert!((meeting.normal_force - Vec3::Z * 6.0).length() < 1e-12);
+        assert!((meeting.friction - Vec3::X * 3.0).length() < 1e-12);
+        let momentum = 2.0 * a.velocity + 3.0 * b.velocity;
+        assert!((momentum - 2.0 * v).length() < 1e-15);
+        let (meeting, [a, b]) = pair(10.0, v);
+        assert_eq!(meeting.state, State::Sticking);
+        assert!((a.velocity - b.velocity).length() < 1e-15);
+        let (meeting, [a, _]) = pair(0.5, Vec3::new(1.0, 0.0, -0.1));
+        assert_eq!(
+            (meeting.state, a.velocity),
+            (State::Open, Vec3::new(1.0, 0.0, -0.1))
+        );
+    }
+
+    /// In a corner both faces are satisfied, and what slides goes along the edge.
+    #[test]
+    fn a_corner_holds_both_ways() {
+        let mut meeting = Meeting {
+            contact: Some(0),
+            count: 2,
+            ..Meeting::default()
+        };
+        meeting.normals[0] = Vec3::Z;
+        meeting.normals[1] = Vec3::new(0.6, 0.0, 0.8);
+        let mut masses = [
+            Mass {
+                mass: 2.0,
+                velocity: Vec3::new(1.0, 2.0, 1.0),
+            },
+            Mass {
+                mass: 3.0,
+                velocity: Vec3::ZERO,
+            },
+        ];
+        let strength = Strength {
+            friction: 0.0,
+            adhesion: 0.0,
+        };
+        let mut one = [meeting];
+        solve(
+            &mut one,
+            |_| [0, 1],
+            &mut masses,
+            &Mat3::IDENTITY,
+            |_| Some(strength),
+            0.1,
+        );
+        let relative = masses[0].velocity - masses[1].velocity;
+        assert!(relative.dot(Vec3::Z) < 1e-9 && relative.dot(meeting.normals[1]) < 1e-9);
+        assert!((relative.y - 2.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,219 @@
+//! Contact: bodies that touch, slide and part (Jassim et al. Section 5).
+//!
+//! Bodies that may slide on each other move with a velocity field each. Where particles of several
+//! fields are around a node, the node exists once in each field (`step/active.rs`), so that masses,
+//! forces, filling and smoothing know of one field only; the fields *meet* there, and impulses keep
+//! them apart (`meeting`). Meetings are found anew whenever particles change elements; no node
+//! belongs to a contact beforehand.
+
+mod depth;
+mod fields;
+mod meeting;
+mod separation;
+
+pub use fields::Fields;
+pub use meeting::{Mass, Meeting, NORMALS, State, Strength, move_together, solve};
+pub use separation::{Ball, separate};
+
+use crate::Vec3;
+use crate::mesh::{Face, Mesh};
+use crate::particles::Particles;
+use crate::plan::{Contact, ContactSurface, Plan};
+use crate::step::Active;
+
+/// Faces of an aligned structure whose normals differ by less than this count as one (20°).
+const SMOOTH_COSINE: f64 = 0.939_692_620_785_908_4;
+
+/// What a contact does at an instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    /// Force on the first side, N: along the normals, and along the surface.
+    pub normal: Vec3,
+    pub tangential: Vec3,
+    /// Number of nodes in each state.
+    pub sticking: u32,
+    pub sliding: u32,
+    pub open: u32,
+}
+
+/// Why a contact cannot be used.
+#[derive(Clone, Debug, thiserror::Error, PartialEq)]
+pub enum ContactError {
+    #[error(
+        "contact `{contact}` is aligned, but its first side does not fill whole elements: element \
+         {element} is filled in part"
+    )]
+    NotOnFaces { contact: String, element: u32 },
+}
+
+/// All contacts of a simulation.
+#[derive(Clone, Debug, Default)]
+pub struct Contacts {
+    /// Contact of each pair of fields.
+    of_fields: Vec<Option<u32>>,
+    /// Field of the first side of each contact.
+    first: Vec<usize>,
+    /// Distance of each particle to its body's surface by id, m.
+    pub depth: Vec<f64>,
+    /// Of each aligned contact the faces of its first side by node; otherwise none.
+    faces: Vec<Vec<(u32, Face)>>,
+    /// Ordered by grid node.
+    pub meetings: Vec<Meeting>,
+    /// Whether fields meet at each node of the step; nothing if there is one field only.
+    meets: Vec<bool>,
+    pub tallies: Vec<Tally>,
+    /// Particles of both bodies at the node that is worked on.
+    pub balls: [Vec<Ball>; 2],
+    /// Masses of the fields at the node that is worked on.
+    pub masses: Vec<Mass>,
+}
+
+impl Contacts {
+    /// `offsets` are the first particles of the elements.
+    pub fn new(
+        plan: &Plan,
+        fields: &Fields,
+        particles: &Particles,
+        offsets: &[u32],
+    ) -> Result<Contacts, ContactError> {
+        let count = fields.count();
+        let mut contacts = Contacts {
+            of_fields: vec![None; count * count],
+            tallies: vec![Tally::default(); plan.contacts.len()],
+            masses: vec![Mass::default(); count],
+            ..Contacts::default()
+        };
+        for (number, contact) in plan.contacts.iter().enumerate() {
+            let [a, b] = [0, 1].map(|side| fields.of(contact.bodies[side][0] as u16));
+            contacts.of_fields[a * count + b] = Some(number as u32);
+            contacts.of_fields[b * count + a] = Some(number as u32);
+            contacts.first.push(a);
+            contacts.faces.push(match contact.surface {
+                ContactSurface::Aligned => aligned(&plan.mesh, contact, particles, offsets)?,
+                ContactSurface::Free => Vec::new(),
+            });
+        }
+        if !plan.contacts.is_empty() {
+            contacts.measure(plan, particles);
+        }
+        Ok(contacts)
+    }
+
+    /// Measures how deep particles lie that have not been measured yet.
+    pub fn measure(&mut self, plan: &Plan, particles: &Particles) {
+        let depths = depth::depths(&plan.mesh, &plan.bodies, particles);
+        let most = particles.id.iter().map(|&id| id as usize + 1).max();
+        let size = most.unwrap_or(0).max(self.depth.len());
+        self.depth.resize(size, f64::NAN);
+        let mut inherits = vec![false; plan.bodies.len()];
+        let inherited = plan.inherited.body.iter();
+        inherited.for_each(|&b| inherits[usize::from(b)] = true);
+        for (p, &id) in particles.id.iter().enumerate() {
+            let known = &mut self.depth[id as usize];
+            if known.is_nan() {
+                // Where a body comes from an earlier run its region is not its surface any more.
+                *known = match inherits[usize::from(particles.body[p])] {
+                    true => 0.5 * particles.volume[p].cbrt(),
+                    false => depths[p].max(0.0),
+                };
+            }
+        }
+    }
+
+    /// The contact of two fields.
+    pub fn of(&self, a: usize, b: usize) -> Option<u32> {
+        self.of_fields[a * self.masses.len() + b]
+    }
+
+    /// Whether a field is the first side of a contact.
+    pub fn is_first(&self, contact: u32, field: usize) -> bool {
+        self.first[contact as usize] == field
+    }
+
+    /// Whether fields meet at a node.
+    #[inline]
+    pub fn meets(&self, slot: usize) -> bool {
+        self.meets.get(slot) == Some(&true)
+    }
+
+    /// Finds the nodes at which fields meet.
+    pub fn find(&mut self, active: &Active) {
+        let (fields, grid_nodes) = (self.masses.len(), active.grid_nodes);
+        if fields < 2 {
+            return;
+        }
+        self.meetings.clear();
+        self.meets.clear();
+        self.meets.resize(active.nodes.len(), false);
+        for grid in 0..grid_nodes {
+            for a in 0..fields {
+                for b in a + 1..fields {
+                    let slots = [a, b].map(|f| active.slot_of_key[f * grid_nodes + grid]);
+                    if slots.iter().all(|&s| (s as usize) < active.nodes.len()) {
+                        let contact = self.of(a, b);
+                        slots.iter().for_each(|&s| self.meets[s as usize] = true);
+                        self.meetings.push(Meeting::new(slots, contact));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Normals of the faces of an aligned structure at a node, out of it, and the part of their area
+    /// that belongs to the node and has material of another body behind it, m². Faces that differ by
+    /// less than 20° are one.
+    pub fn face_normals(
+        &self,
+        mesh: &Mesh,
+        contact: u32,
+        node: u32,
+        touched: impl Fn(u32) -> bool,
+    ) -> ([Vec3; NORMALS], usize, f64) {
+        let mut sums = [Vec3::ZERO; NORMALS];
+        let (mut count, mut area) = (0, 0.0);
+        for face in depth::at(&self.faces[contact as usize], node) {
+            let own = mesh.face_area(face);
+            if mesh.across(face).is_some_and(|f| touched(f.element)) {
+                area += own.length() / 3.0;
+            }
+            let alike = |sum: &Vec3| sum.normalize().dot(own.normalize()) > SMOOTH_COSINE;
+            match sums[..count].iter().position(alike) {
+                Some(k) => sums[k] += own,
+                None if count < NORMALS => {
+                    sums[count] = own;
+                    count += 1;
+                }
+                // A fourth direction goes to the one that is nearest.
+                None => {
+                    let cosine = |k: &usize| sums[*k].normalize().dot(own);
+                    let nearest = (0..NORMALS).max_by(|a, b| cosine(a).total_cmp(&cosine(b)));
+                    sums[nearest.unwrap_or(0)] += own;
+                }
+            }
+        }
+        (sums.map(|s| s.normalize_or_zero()), count, area)
+    }
+}
+
+/// The faces of an aligned contact's first side by node.
+fn aligned(
+    mesh: &Mesh,
+    contact: &Contact,
+    particles: &Particles,
+    offsets: &[u32],
+) -> Result<Vec<(u32, Face)>, ContactError> {
+    let mut inside = vec![false; mesh.tets.len()];
+    for (e, inside) in inside.iter_mut().enumerate() {
+        let held = offsets[e] as usize..offsets[e + 1] as usize;
+        let own = |&p: &usize| contact.bodies[0].contains(&usize::from(particles.body[p]));
+        let volume: f64 = held.filter(own).map(|p| particles.volume[p]).sum();
+        *inside = volume > 0.0;
+        if *inside && (volume / mesh.volumes[e] - 1.0).abs() > 1e-9 {
+            return Err(ContactError::NotOnFaces {
+                contact: contact.name.clone(),
+                element: e as u32,
+            });
+        }
+    }
+    Ok(depth::faces_by_node(mesh, &inside))
+}

@@ -30,6 +30,10 @@ const CASES: &[Case] = &[
         "exact.csv", "exact-dashpot.csv", "exact-rigid.csv", "README.md",
     ),
     case!("slope": "scene.toml", "slope.geo", "slope.msh", "README.md"),
+    case!("tunnel-face":
+        "scene.toml", "fine.toml", "stand.toml", "limit.toml", "tunnel.geo", "fine.geo",
+        "tunnel.msh", "figures.py", "README.md",
+    ),
 ];
 
 /// Names of the examples.

@@ -213,3 +213,33 @@ fn the_slope_is_computed() {
     assert_eq!(summary["steps"].as_u64(), Some(50));
     assert!(summary["energy"]["plastic"].as_f64().unwrap() >= 0.0);
 }
+
+/// The face of the tunnel out of the binary, cut short: held by the ground's own pressure nothing comes
+/// into the bore, and without it soil begins to. Its fine mesh has to be made first, and the message
+/// says how.
+#[test]
+fn the_tunnel_face_is_computed() {
+    let bench = Bench::new();
+    bench.done(&["new", "tunnel-face", "mine"]);
+    let short = ["--set", "stages.collapse.duration=0.15 s"];
+    bench.done(
+        &[
+            &["run", "mine"][..],
+            &short,
+            &["--set", "output.frame_interval=1 s"],
+        ]
+        .concat(),
+    );
+    let summary = bench.summary("out/mine");
+    assert_eq!(summary["particles"].as_u64(), Some(29836));
+    let history = csv::read(&bench.path("out/mine/history.csv")).unwrap();
+    let stage = history.column("stage").unwrap();
+    let volume = history.column("bore.volume").unwrap();
+    let inside = |of: f64| stage.iter().zip(volume).filter(move |s| *s.0 == of);
+    assert!(inside(0.0).count() > 3 && inside(0.0).all(|(_, &v)| v == 0.0));
+    assert!(*volume.last().unwrap() > 0.0, "{volume:?}");
+    assert!(summary["energy"]["plastic"].as_f64().unwrap() > 0.0);
+
+    let said = bench.fails(2, &["check", "mine/fine.toml"]);
+    assert!(said.contains("gmsh"), "{said}");
+}

@@ -90,7 +90,7 @@ pub enum Stop {
         time: f64,
     },
     #[error(
-        "stage `{stage}` reached its limit without equilibrium, {time:e} s after the start: the \
+        "stage `{stage}` reached its limit without equilibrium, {time:.4} s after the start: the \
          out-of-balance ratio is {unbalanced:.2e} (at most {least_unbalanced:e}), the grid's kinetic \
          energy {kinetic:.2e} of its reference (at most {least_kinetic:e})"
     )]

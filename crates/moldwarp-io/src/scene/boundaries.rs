@@ -14,7 +14,7 @@ use moldwarp::plan::{Boundary, BoundaryKind};
 /// Kinds of boundaries; what the reference says of each stands here.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// No motion in the directions that are held.
+    /// No motion in the directions that are held. Inside the mesh a surface held in all is a wall.
     Fixed,
     /// No motion normal to the surface.
     Roller,

@@ -69,7 +69,7 @@ pub fn inherit(scene: &mut Scene, given: &str) -> Result<(), SceneError> {
 /// The run and its stage, if there is a file of it.
 fn find(given: &str) -> Result<Earlier, Fault> {
     let (folder, stage) = match given.rsplit_once('@') {
-        Some((folder, stage)) => (folder, Some(stage)),
+        Some((folder, stage)) => (folder, Some(stage).filter(|s| !s.is_empty())),
         None => (given, None),
     };
     let path = PathBuf::from(folder);
@@ -94,7 +94,7 @@ fn find(given: &str) -> Result<Earlier, Fault> {
     };
     let Some(stage) = stage else {
         return Err(Fault::new(format!("`--from {given}` names no stage"))
-            .help(format!("write `{given}@STAGE`; {}", there(""))));
+            .help(format!("write `{folder}@STAGE`; {}", there(""))));
     };
     if completed.contains(&stage) {
         return Ok(Earlier {

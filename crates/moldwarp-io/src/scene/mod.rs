@@ -106,6 +106,11 @@ impl Origin {
                 self.overlap(first, second)
             }
             (SetupError::Inherited(error), _) => earlier::explain(error),
+            (SetupError::NoInitialStress { body, .. }, _) => {
+                Fault::new(error.to_string()).help(format!(
+                    "give `{body}` its `k0` and the scene [initial_stress], or the load a pressure"
+                ))
+            }
             (SetupError::ProbeOfChange { probe, .. } | SetupError::ProbeOfNothing { probe }, _) => {
                 self.lost(error, probe)
             }

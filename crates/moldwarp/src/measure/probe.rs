@@ -183,7 +183,8 @@ impl Place {
             let model = &plan.materials[body.material].model;
             particles.volume[p] * model.solid_share(&particles.state[p])
         };
-        match self {
+        // The sum of nothing is −0.
+        let volume: f64 = match self {
             Place::Volume(group) => {
                 let elements = &plan.mesh.volume_groups[*group].elements;
                 let inside = |&e: &u32| sim.particles_in(e);
@@ -194,7 +195,8 @@ impl Place {
                 all.filter(|&p| particles.body[p] == *body).map(solid).sum()
             }
             Place::Nodes { .. } | Place::Particles(_) => 0.0,
-        }
+        };
+        volume + 0.0
     }
 
     fn stress(&self, sim: &Simulation) -> Voigt {

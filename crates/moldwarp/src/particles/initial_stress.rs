@@ -42,7 +42,7 @@ pub enum InitialStressError {
          of elements"
     )]
     NotOnFaces { body: String },
-    #[error("the initial stress is beyond the strength of body `{body}`, first at {position} m")]
+    #[error("the initial stress is beyond the strength of body `{body}`, first at {position:.4} m")]
     Yields { body: String, position: Vec3 },
 }
 

@@ -2,7 +2,7 @@
 // the ground. Lengths in m; x across from the plane of symmetry, y along, away from the bore, z up,
 // 0 at the ground's surface. Mesh with: gmsh tunnel.geo -3 -o tunnel.msh
 SetFactory("OpenCASCADE");
-DefineConstant[ face = 1.5, far = 6 ]; // size of elements at the face and far away
+DefineConstant[ face = 1.2, far = 6 ]; // size of elements at the face and far away
 D = 10;        // diameter
 cover = 10;    // of soil above the crown
 bore = 3 * D;  // length of the lined bore behind the face
@@ -50,14 +50,21 @@ front_() = {Surface In BoundingBox{-e, ahead - e, base - e, aside + e, ahead + e
 Physical Surface("sides") = {side_(), back_(), front_()};
 Physical Surface("surface") = {Surface In BoundingBox{-e, -bore - e, -e, aside + e, ahead + e, e}};
 
-// Fine in the bore, at the face and above it up to the surface, where the soil moves.
+// Fine where soil moves: ahead of the face and above it up to the surface, and in the bore, which
+// costs nothing while it is empty.
 Field[1] = Box;
 Field[1].VIn = face; Field[1].VOut = far;
-Field[1].XMin = 0; Field[1].XMax = 0.7 * D;
-Field[1].YMin = -1.2 * D; Field[1].YMax = 0.7 * D;
-Field[1].ZMin = axis - 0.6 * D; Field[1].ZMax = over;
-Field[1].Thickness = 2 * D;
-Background Field = 1;
+Field[1].XMin = 0; Field[1].XMax = 0.8 * D;
+Field[1].YMin = -0.5 * D; Field[1].YMax = 1.3 * D;
+Field[1].ZMin = axis - 0.5 * D; Field[1].ZMax = over;
+Field[1].Thickness = D;
+Field[2] = Constant;
+Field[2].VIn = 1.2 * face; Field[2].VOut = far;
+Field[2].VolumesList = {bore_()};
+Field[2].IncludeBoundary = 1;
+Field[3] = Min;
+Field[3].FieldsList = {1, 2};
+Background Field = 3;
 General.NumThreads = 1; // the same mesh each time
 Mesh.MeshSizeExtendFromBoundary = 0;
 Mesh.MeshSizeFromPoints = 0;

@@ -71,6 +71,7 @@ pub fn scene_hash(plan: &Plan) -> String {
         bodies,
         boundaries,
         loads,
+        contacts,
         probes,
         initial_stress,
         inherited,
@@ -94,6 +95,7 @@ pub fn scene_hash(plan: &Plan) -> String {
     h.text("bodies", &format!("{bodies:?}"));
     h.text("boundaries", &format!("{boundaries:?}"));
     h.text("loads", &format!("{loads:?}"));
+    h.text("contacts", &format!("{contacts:?}"));
     h.text("probes", &format!("{probes:?}"));
     h.text("initial_stress", &format!("{initial_stress:?}"));
     inherited_particles(&mut h, inherited);

@@ -103,7 +103,8 @@ fn push(sim: &mut Simulation, contacts: &mut Contacts, h: f64) {
             for (field, slot) in slots(active, group) {
                 let (node, velocity) = (&mut nodes[slot], masses[field].velocity);
                 match rigid_of_field[field] {
-                    Some(r) => rigid[r].velocity = velocity,
+                    // What holds the body elsewhere takes the rest.
+                    Some(r) => rigid[r].velocity = rigid[r].free * velocity,
                     None => node.acceleration = (velocity - node.velocity) / h,
                 }
             }

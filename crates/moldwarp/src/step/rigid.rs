@@ -19,8 +19,13 @@ pub(super) fn predict(sim: &mut Simulation, h: f64) {
     for body in &mut contacts.rigid {
         let (mut mass, mut momentum, mut force) = (0.0, Vec3::ZERO, Vec3::ZERO);
         let mut held = HeldDirections::default();
+        // Of the node with most mass: one that the body has just reached has not moved with it.
+        let (mut most, mut moved) = (0.0, Vec3::ZERO);
         for slot in own(active, body.field) {
             let node = &nodes[slot];
+            if node.mass > most {
+                (most, moved) = (node.mass, node.moved);
+            }
             mass += node.mass;
             momentum += node.velocity * node.mass;
             force += *gravity * node.mass + node.load;
@@ -38,6 +43,7 @@ pub(super) fn predict(sim: &mut Simulation, h: f64) {
             let node = &mut nodes[slot];
             let force = *gravity * node.mass + node.load;
             node.damping = Vec3::ZERO;
+            node.moved = moved;
             node.reaction = body.free * force - force;
         }
         spread(body, active, nodes, h);

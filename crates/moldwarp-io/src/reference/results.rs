@@ -68,7 +68,7 @@ fn shape(data: Data) -> &'static str {
 }
 
 /// A material of every model.
-fn materials() -> [Material; 2] {
+fn materials() -> [Material; 3] {
     let elastic = LinearElastic {
         young_modulus: 1.0,
         poisson_ratio: 0.0,

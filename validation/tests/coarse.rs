@@ -38,5 +38,6 @@ coarse! {
     sliding_block = "sliding-block",
     spheres = "spheres",
     stack = "stack",
+    penetration = "penetration",
     drop = "drop",
 }

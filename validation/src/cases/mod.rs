@@ -18,7 +18,7 @@ mod thick_cylinder;
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 18] = [
+pub const ALL: [Case; 19] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -108,6 +108,11 @@ pub const ALL: [Case; 18] = [
         name: "drop",
         title: "A block that falls flat on a floor",
         run: contact::drop::run,
+    },
+    Case {
+        name: "penetration",
+        title: "A rigid wedge and a rigid cone pushed into soil",
+        run: contact::penetration::run,
     },
 ];
 

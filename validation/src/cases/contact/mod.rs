@@ -1,6 +1,7 @@
 //! Bodies that touch, slide and part.
 
 pub mod drop;
+pub mod penetration;
 pub mod sliding_block;
 pub mod spheres;
 pub mod stack;

@@ -36,6 +36,7 @@ coarse! {
     heap = "heap",
     collapse_smoothing = "collapse-smoothing",
     sliding_block = "sliding-block",
+    sliding_block_gmsh = "sliding-block-gmsh",
     spheres = "spheres",
     stack = "stack",
     penetration = "penetration",

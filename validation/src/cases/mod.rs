@@ -18,7 +18,7 @@ mod thick_cylinder;
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 19] = [
+pub const ALL: [Case; 20] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -93,6 +93,11 @@ pub const ALL: [Case; 19] = [
         name: "sliding-block",
         title: "A block that slides down an incline, and one that stays",
         run: contact::sliding_block::run,
+    },
+    Case {
+        name: "sliding-block-gmsh",
+        title: "A block slides down an incline in an unstructured mesh",
+        run: contact::unstructured::run,
     },
     Case {
         name: "spheres",

@@ -5,6 +5,7 @@ pub mod penetration;
 pub mod sliding_block;
 pub mod spheres;
 pub mod stack;
+pub mod unstructured;
 
 use moldwarp::plan::{Body, Contact, ContactSurface, Place, Region, Seeding};
 use moldwarp::{Simulation, Vec3};

@@ -5,7 +5,7 @@ use crate::bodies;
 use crate::boundary::{
     Absorbing, Constraints, LoadError, LoadPoint, Surroundings, load_points, surface_nodes,
 };
-use crate::contact::{ContactError, Contacts, Fields};
+use crate::contact::{ContactError, Contacts, Fields, is_rigid};
 use crate::measure::{Ledger, Probes, Scale, Watch};
 use crate::mesh::{Follower, Walls};
 use crate::particles::initial_stress::{self, Ground};
@@ -177,7 +177,7 @@ impl Simulation {
         check_reactions(&plan)?;
         let (mut particles, reserve) = bodies::at_the_start(&plan)?;
         let mut order = Order::default();
-        let fields = Fields::new(plan.bodies.len(), &plan.contacts);
+        let fields = Fields::new(plan.bodies.len(), &plan.contacts, |b| is_rigid(&plan, b));
         order.sort(&mut particles, plan.mesh.tets.len(), &fields);
         let contacts = Contacts::new(&plan, &fields, &particles, &order.offsets)?;
         let loads = ground(&plan, &mut particles, &order.offsets)?;

@@ -154,3 +154,84 @@ fn a_block_slides_as_coulomb_says() {
         assert_eq!(e.friction > 0.0, friction > 0.0);
     }
 }
+
+/// A rigid block slides as an elastic one does, and no stress is in it.
+#[test]
+fn a_rigid_block_slides_as_coulomb_says() {
+    for (surface, friction) in [(ContactSurface::Aligned, 0.0), (ContactSurface::Free, 0.2)] {
+        let mut plan = incline(0.1, contact(friction, surface));
+        plan.materials.push(NamedMaterial {
+            name: "steel".into(),
+            density: 2000.0,
+            model: Material::Rigid,
+        });
+        plan.bodies[1].material = 1;
+        plan.stages[1].until = Until::Duration(0.4);
+        let (path, sim) = slide(plan);
+        let exact = G * (SLOPE.sin() - friction * SLOPE.cos());
+        let error = (acceleration(&path) - exact) / (G * SLOPE.sin());
+        let e = sim.energies();
+        println!(
+            "rigid {surface:?}: error {error:.4}, {:?}, {e:?}",
+            path[path.len() - 2]
+        );
+        assert!(error.abs() < 0.03);
+        assert!(e.residual.abs() < 1e-12 * sim.energy_turned_over());
+        let p = sim.particles();
+        let block: Vec<usize> = (0..p.len()).filter(|&i| p.body[i] == 1).collect();
+        let first = p.displacement[block[0]];
+        for &i in &block {
+            assert_eq!(p.stress[i], [0.0; 6]);
+            assert!((p.displacement[i] - first).length() < 1e-12);
+        }
+    }
+}
+
+/// A body flies into another, elastic or rigid, in free space: momentum does not drift, no force acts
+/// before they touch, and what one gains the other has lost.
+#[test]
+fn momentum_passes_from_body_to_body() {
+    for rigid in [false, true] {
+        let mut plan = incline(0.1, contact(0.3, ContactSurface::Free));
+        plan.mesh = box_mesh(Vec3::splat(1.0), [10; 3]).unwrap();
+        plan.gravity = Vec3::ZERO;
+        plan.boundaries.clear();
+        let low = Vec3::new(0.1, 0.3, 0.3);
+        plan.bodies = vec![
+            brick("first", low, low + Vec3::splat(0.3)),
+            brick(
+                "second",
+                low + Vec3::new(0.4, 0.1, 0.0),
+                low + Vec3::new(0.7, 0.4, 0.3),
+            ),
+        ];
+        if rigid {
+            plan.materials.push(NamedMaterial {
+                name: "steel".into(),
+                density: 3000.0,
+                model: Material::Rigid,
+            });
+            plan.bodies[1].material = 1;
+        }
+        plan.stages = vec![Stage {
+            initial_velocities: vec![(0, Vec3::new(1.0, 0.2, 0.0))],
+            ..Stage::new("flight", Until::Duration(0.25))
+        }];
+        let mut sim = Simulation::new(plan).unwrap();
+        let before = sim.particles().momentum();
+        let mut touched = None;
+        while !sim.finished() {
+            sim.step().unwrap();
+            if touched.is_none() && sim.energies().contact != 0.0 {
+                touched = Some(sim.time());
+            }
+        }
+        let drift = (sim.particles().momentum() - before).length() / before.length();
+        let e = sim.energies();
+        println!("rigid {rigid}: touched at {touched:?}, drift {drift:e}, {e:?}");
+        assert!(drift < 1e-12, "{drift}");
+        // The gap of 0.1 m closes in 0.1 s; a fifth of an element is 0.02 m.
+        assert!((touched.unwrap() - 0.1).abs() < 0.02);
+        assert!(e.residual.abs() < 1e-12 * sim.energy_turned_over());
+    }
+}

@@ -21,11 +21,11 @@ impl Default for Fields {
 
 impl Fields {
     /// Bodies that no contact names share the first field, those that one side of a contact lists
-    /// together share theirs, every other body has its own.
-    pub fn new(bodies: usize, contacts: &[Contact]) -> Fields {
+    /// together share theirs, every other body has its own, and so has a body that is rigid.
+    pub fn new(bodies: usize, contacts: &[Contact], rigid: impl Fn(usize) -> bool) -> Fields {
         const NO_FIELD: usize = usize::MAX;
         let mut root: Vec<usize> = (0..bodies).collect();
-        let mut named = vec![false; bodies];
+        let mut named: Vec<bool> = (0..bodies).map(rigid).collect();
         for side in contacts.iter().flat_map(|c| &c.bodies) {
             for &body in side {
                 named[body] = true;

@@ -59,10 +59,11 @@ pub struct Strength {
     pub adhesion: f64,
 }
 
-/// The node of a body: mass, kg, and velocity at the end of the kick, m/s.
+/// A body at a node: 1 over its mass there, 1/kg, and its velocity at the end of the kick, m/s. Of a
+/// rigid body both are those of the whole body.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mass {
-    pub mass: f64,
+    pub inverse: f64,
     pub velocity: Vec3,
 }
 
@@ -85,11 +86,11 @@ impl Meeting {
         free: &Mat3,
         strength: Option<Strength>,
     ) -> f64 {
-        let mass = a.mass * b.mass / (a.mass + b.mass);
+        let mass = 1.0 / (a.inverse + b.inverse);
         let mut changed = 0.0;
         let mut give = |impulse: Vec3| {
-            a.velocity -= impulse / a.mass;
-            b.velocity += impulse / b.mass;
+            a.velocity -= impulse * a.inverse;
+            b.velocity += impulse * b.inverse;
             changed += impulse.length();
             a.velocity - b.velocity
         };
@@ -149,8 +150,14 @@ impl Meeting {
         rest
     }
 
-    /// Forces of the kick's impulses.
-    fn settle(&mut self, h: f64) {
+    /// No impulses yet.
+    pub fn begin(&mut self) {
+        (self.normal, self.tangential) = ([0.0; NORMALS], Vec3::ZERO);
+        self.state = State::Open;
+    }
+
+    /// Forces of the impulses of a kick of length `h`.
+    pub fn settle(&mut self, h: f64) {
         let normals = self.normals.iter().zip(self.normal);
         self.normal_force = normals.map(|(n, j)| *n * j).sum::<Vec3>() / h;
         self.friction = self.tangential / h;
@@ -162,7 +169,7 @@ impl Meeting {
         if self.state == State::Open {
             return;
         }
-        let share = b.mass / (a.mass + b.mass);
+        let share = a.inverse / (a.inverse + b.inverse);
         let mut give = |change: Vec3| {
             a.velocity -= change * share;
             b.velocity += change * (1.0 - share);
@@ -183,26 +190,24 @@ impl Meeting {
     }
 }
 
-/// Solves all meetings at a grid node for a kick of length `h`. `masses` are those of the fields by
-/// number; `fields` those of each meeting.
+/// Solves all meetings at a grid node; impulses go on from what they are. `masses` are those of the
+/// fields by number, `fields` gives the two of a meeting. Returns by how much impulses have changed, and
+/// how much they are, N s.
 pub fn solve(
     meetings: &mut [Meeting],
     fields: impl Fn(&Meeting) -> [usize; 2],
     masses: &mut [Mass],
     free: &Mat3,
     strength: impl Fn(&Meeting) -> Option<Strength>,
-    h: f64,
-) {
-    for meeting in meetings.iter_mut() {
-        (meeting.normal, meeting.tangential) = ([0.0; NORMALS], Vec3::ZERO);
-    }
+) -> [f64; 2] {
     let sweeps = match meetings {
         [one] if one.count <= 1 => 1,
         _ => SWEEPS,
     };
+    let (mut first, mut total) = (None, 0.0);
     for _ in 0..sweeps {
         let mut changed = 0.0;
-        let mut total = 0.0;
+        total = 0.0;
         for meeting in meetings.iter_mut() {
             let [i, k] = fields(meeting);
             let (mut a, mut b) = (masses[i], masses[k]);
@@ -210,11 +215,12 @@ pub fn solve(
             total += meeting.normal.iter().sum::<f64>() + meeting.tangential.length();
             (masses[i], masses[k]) = (a, b);
         }
+        first.get_or_insert(changed);
         if changed <= 1e-14 * total {
             break;
         }
     }
-    meetings.iter_mut().for_each(|m| m.settle(h));
+    [first.unwrap_or(0.0), total]
 }
 
 /// The same for velocities that move the nodes.
@@ -242,6 +248,15 @@ pub fn move_together(
 mod tests {
     use super::*;
 
+    /// 2 kg and 3 kg, the second at rest.
+    fn two(v: Vec3) -> [Mass; 2] {
+        let mass = |mass: f64, velocity| Mass {
+            inverse: 1.0 / mass,
+            velocity,
+        };
+        [mass(2.0, v), mass(3.0, Vec3::ZERO)]
+    }
+
     fn pair(friction: f64, v: Vec3) -> (Meeting, [Mass; 2]) {
         let mut meeting = Meeting {
             contact: Some(0),
@@ -249,16 +264,7 @@ mod tests {
             ..Meeting::default()
         };
         meeting.normals[0] = Vec3::Z;
-        let mut masses = [
-            Mass {
-                mass: 2.0,
-                velocity: v,
-            },
-            Mass {
-                mass: 3.0,
-                velocity: Vec3::ZERO,
-            },
-        ];
+        let mut masses = two(v);
         let strength = Strength {
             friction,
             adhesion: 0.0,
@@ -270,8 +276,8 @@ mod tests {
             &mut masses,
             &Mat3::IDENTITY,
             |_| Some(strength),
-            0.1,
         );
+        one[0].settle(0.1);
         (one[0], masses)
     }
 
@@ -305,16 +311,7 @@ mod tests {
         };
         meeting.normals[0] = Vec3::Z;
         meeting.normals[1] = Vec3::new(0.6, 0.0, 0.8);
-        let mut masses = [
-            Mass {
-                mass: 2.0,
-                velocity: Vec3::new(1.0, 2.0, 1.0),
-            },
-            Mass {
-                mass: 3.0,
-                velocity: Vec3::ZERO,
-            },
-        ];
+        let mut masses = two(Vec3::new(1.0, 2.0, 1.0));
         let strength = Strength {
             friction: 0.0,
             adhesion: 0.0,
@@ -326,8 +323,8 @@ mod tests {
             &mut masses,
             &Mat3::IDENTITY,
             |_| Some(strength),
-            0.1,
         );
+        one[0].settle(0.1);
         let relative = masses[0].velocity - masses[1].velocity;
         assert!(relative.dot(Vec3::Z) < 1e-9 && relative.dot(meeting.normals[1]) < 1e-9);
         assert!((relative.y - 2.0).abs() < 1e-15);

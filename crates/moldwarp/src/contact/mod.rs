@@ -9,11 +9,13 @@
 mod depth;
 mod fields;
 mod meeting;
+mod rigid;
 mod separation;
 
 pub use fields::Fields;
 pub use meeting::{Mass, Meeting, NORMALS, State, Strength, move_together, solve};
-pub use separation::{Ball, separate};
+pub use rigid::{HeldDirections, Rigid, is_rigid};
+pub use separation::{Ball, outermost, separate};
 
 use crate::Vec3;
 use crate::mesh::{Face, Mesh};
@@ -39,6 +41,8 @@ pub struct Tally {
 /// Why a contact cannot be used.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 pub enum ContactError {
+    #[error("body `{body}` is rigid and cannot hang together with others in a contact")]
+    RigidWithOthers { body: String },
     #[error(
         "contact `{contact}` is aligned, but its first side does not fill whole elements: element \
          {element} is filled in part"
@@ -62,8 +66,9 @@ pub struct Contacts {
     /// Whether fields meet at each node of the step; nothing if there is one field only.
     meets: Vec<bool>,
     pub tallies: Vec<Tally>,
-    /// Particles of both bodies at the node that is worked on.
-    pub balls: [Vec<Ball>; 2],
+    pub rigid: Vec<Rigid>,
+    /// Index into `rigid` of each field.
+    pub rigid_of_field: Vec<Option<usize>>,
     /// Masses of the fields at the node that is worked on.
     pub masses: Vec<Mass>,
 }
@@ -83,6 +88,7 @@ impl Contacts {
             masses: vec![Mass::default(); count],
             ..Contacts::default()
         };
+        check_rigid(plan)?;
         for (number, contact) in plan.contacts.iter().enumerate() {
             let [a, b] = [0, 1].map(|side| fields.of(contact.bodies[side][0] as u16));
             contacts.of_fields[a * count + b] = Some(number as u32);
@@ -92,6 +98,11 @@ impl Contacts {
                 ContactSurface::Aligned => aligned(&plan.mesh, contact, particles, offsets)?,
                 ContactSurface::Free => Vec::new(),
             });
+        }
+        contacts.rigid = rigid::bodies(plan, fields);
+        contacts.rigid_of_field = vec![None; count];
+        for (number, rigid) in contacts.rigid.iter().enumerate() {
+            contacts.rigid_of_field[rigid.field] = Some(number);
         }
         if !plan.contacts.is_empty() {
             contacts.measure(plan, particles);
@@ -216,4 +227,16 @@ fn aligned(
         }
     }
     Ok(depth::faces_by_node(mesh, &inside))
+}
+
+/// A rigid body has a velocity of its own.
+fn check_rigid(plan: &Plan) -> Result<(), ContactError> {
+    let sides = plan.contacts.iter().flat_map(|c| &c.bodies);
+    let mut several = sides.filter(|side| side.len() > 1).flatten();
+    match several.find(|&&body| is_rigid(plan, body)) {
+        None => Ok(()),
+        Some(&body) => Err(ContactError::RigidWithOthers {
+            body: plan.bodies[body].name.clone(),
+        }),
+    }
 }

@@ -21,13 +21,17 @@ pub type Ball = (Vec3, f64);
 
 /// The direction from a to b, found from `start` (a unit vector) within the directions that are
 /// `free`, and the gap along it, m.
-pub fn separate(a: &[Ball], b: &[Ball], start: Vec3, free: &Mat3) -> (Vec3, f64) {
+pub fn separate<A, B>(a: impl Fn() -> A, b: impl Fn() -> B, start: Vec3, free: &Mat3) -> (Vec3, f64)
+where
+    A: Iterator<Item = Ball>,
+    B: Iterator<Item = Ball>,
+{
     let mut n = start;
     let (mut best, mut widest) = (n, f64::NEG_INFINITY);
     let mut change = FIRST;
     for _ in 0..CHANGES {
-        let (far, reach) = outermost(a, n);
-        let (near, other) = outermost(b, -n);
+        let (far, reach) = outermost(a(), n);
+        let (near, other) = outermost(b(), -n);
         let gap = -other - reach;
         if gap > widest {
             (best, widest) = (n, gap);
@@ -45,9 +49,9 @@ pub fn separate(a: &[Ball], b: &[Ball], start: Vec3, free: &Mat3) -> (Vec3, f64)
 }
 
 /// The ball that reaches farthest along n, and how far.
-fn outermost(balls: &[Ball], n: Vec3) -> (Vec3, f64) {
+pub fn outermost(balls: impl Iterator<Item = Ball>, n: Vec3) -> (Vec3, f64) {
     let mut found = (Vec3::ZERO, f64::NEG_INFINITY);
-    for &(x, depth) in balls {
+    for (x, depth) in balls {
         let reach = x.dot(n) + depth;
         if reach > found.1 {
             found = (x, reach);
@@ -77,7 +81,12 @@ mod tests {
             }
         }
         let start = Vec3::new(0.5, 0.4, 0.7).normalize();
-        let (n, gap) = separate(&floor, &block, start, &Mat3::IDENTITY);
+        let (n, gap) = separate(
+            || floor.iter().copied(),
+            || block.iter().copied(),
+            start,
+            &Mat3::IDENTITY,
+        );
         assert!(n.z > 0.999_998, "{n}");
         assert!((gap - 0.01).abs() < 1e-3, "{gap}");
     }

@@ -39,7 +39,15 @@ pub struct Update {
 pub enum Material {
     LinearElastic(LinearElastic),
     MohrCoulomb(MohrCoulomb),
+    /// The body moves as one, without turning (`contact/rigid.rs`).
+    Rigid,
 }
+
+/// A rigid body has no waves and takes up no strain.
+const NOTHING: LinearElastic = LinearElastic {
+    young_modulus: 0.0,
+    poisson_ratio: 0.0,
+};
 
 impl Material {
     /// Stress after a strain increment. `stress` (Pa) has been rotated by the step's spin.
@@ -51,13 +59,17 @@ impl Material {
                 plastic_strain: [0.0; 6],
             },
             Material::MohrCoulomb(soil) => soil.update_particle(stress, strain, state),
+            Material::Rigid => Update {
+                stress: [0.0; 6],
+                plastic_strain: [0.0; 6],
+            },
         }
     }
 
     /// The model's state variables, in the order of a particle's [`State`].
     pub fn state_fields(&self) -> &'static [StateField] {
         match self {
-            Material::LinearElastic(_) => &[],
+            Material::LinearElastic(_) | Material::Rigid => &[],
             Material::MohrCoulomb(_) => &mohr_coulomb::STATE_FIELDS,
         }
     }
@@ -66,7 +78,7 @@ impl Material {
     #[inline]
     pub fn solid_share(&self, state: &State) -> f64 {
         match self {
-            Material::LinearElastic(_) => 1.0,
+            Material::LinearElastic(_) | Material::Rigid => 1.0,
             Material::MohrCoulomb(_) => mohr_coulomb::solid_share(state),
         }
     }
@@ -76,7 +88,7 @@ impl Material {
     #[inline]
     pub fn is_separated(&self, stress: &Voigt, state: &State) -> bool {
         match self {
-            Material::LinearElastic(_) => false,
+            Material::LinearElastic(_) | Material::Rigid => false,
             Material::MohrCoulomb(_) => mohr_coulomb::is_separated(stress, state),
         }
     }
@@ -84,7 +96,7 @@ impl Material {
     /// Whether a stress (Pa) is beyond the strength, by more than round-off.
     pub fn yields(&self, stress: &Voigt) -> bool {
         match self {
-            Material::LinearElastic(_) => false,
+            Material::LinearElastic(_) | Material::Rigid => false,
             Material::MohrCoulomb(soil) => {
                 let size = stress.iter().fold(0.0f64, |m, s| m.max(s.abs()));
                 soil.yield_function(stress) > 1e-9 * size
@@ -92,11 +104,17 @@ impl Material {
         }
     }
 
+    /// Whether bodies of it move as one.
+    pub fn is_rigid(&self) -> bool {
+        matches!(self, Material::Rigid)
+    }
+
     /// The elastic part of the model.
     pub fn elasticity(&self) -> &LinearElastic {
         match self {
             Material::LinearElastic(elastic) => elastic,
             Material::MohrCoulomb(soil) => soil.elastic(),
+            Material::Rigid => &NOTHING,
         }
     }
 }

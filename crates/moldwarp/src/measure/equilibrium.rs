@@ -113,7 +113,8 @@ impl Scale {
         });
         Scale {
             kinetic: 0.5e-6 * sim.particles().total_mass() * g * height,
-            travel_time: size.max_element() / slowest.fold(f64::INFINITY, f64::min),
+            travel_time: size.max_element()
+                / slowest.filter(|c| *c > 0.0).fold(f64::INFINITY, f64::min),
         }
     }
 }

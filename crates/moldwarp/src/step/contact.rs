@@ -4,14 +4,21 @@
 use super::{Active, Node};
 use crate::boundary::Constraints;
 use crate::contact::{
-    Ball, Contacts, Mass, Meeting, NORMALS, State, Strength, Tally, move_together, separate, solve,
+    Ball, Contacts, Mass, Meeting, NORMALS, State, Strength, Tally, move_together, outermost,
+    separate, solve,
 };
+use crate::parallel::fold;
 use crate::plan::ContactSurface;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3};
 
 /// A normal of which less than this is left in the free directions of a node is none.
 const LEAST_NORMAL: f64 = 0.1;
+
+/// Most sweeps over all meetings where a rigid body ties them together.
+const SWEEPS: usize = 200;
+/// Meetings that one thread works on at a time.
+const BLOCK: usize = 8;
 
 /// Impulses of a kick of `before` + `after` seconds, and the second half of their work in the last
 /// drift.
@@ -20,15 +27,37 @@ pub(super) fn kick(sim: &mut Simulation, before: f64, after: f64) {
         return;
     }
     let mut contacts = std::mem::take(&mut sim.contacts);
-    let drift = 2.0 * before.max(after);
-    for k in 0..contacts.meetings.len() {
-        let meeting = contacts.meetings[k];
-        contacts.meetings[k] = met(sim, &mut contacts, meeting, drift);
+    look(sim, &mut contacts, 2.0 * before.max(after));
+    push(sim, &mut contacts, before + after);
+    contacts.take_stock(&sim.active);
+    sim.contacts = contacts;
+    if before > 0.0 {
+        work(sim);
     }
+}
+
+/// Normals, gaps and areas as they are now. `drift` is how long nodes will move with the velocities of
+/// the kick, s.
+fn look(sim: &Simulation, contacts: &mut Contacts, drift: f64) {
+    let mut meetings = std::mem::take(&mut contacts.meetings);
+    let known = &*contacts;
+    fold(&mut meetings[..], BLOCK, &|meetings: &mut [Meeting]| {
+        for meeting in meetings {
+            *meeting = met(sim, known, *meeting, drift);
+        }
+    });
+    contacts.meetings = meetings;
+}
+
+/// The impulses of a kick of length `h`.
+fn push(sim: &mut Simulation, contacts: &mut Contacts, h: f64) {
     let Contacts {
-        meetings, masses, ..
-    } = &mut contacts;
-    let h = before + after;
+        meetings,
+        masses,
+        rigid,
+        rigid_of_field,
+        ..
+    } = contacts;
     let Simulation {
         plan,
         active,
@@ -45,25 +74,48 @@ pub(super) fn kick(sim: &mut Simulation, before: f64, after: f64) {
             }
         })
     };
-    for group in meetings.chunk_by_mut(|a, b| same_node(active, a, b)) {
-        let free = free(constraints, active, &group[0]);
-        load(masses, group, active, |slot| {
-            let node = &nodes[slot];
-            (node.mass, node.velocity + node.acceleration * h)
-        });
-        solve(group, |m| fields(active, m), masses, &free, strength, h);
-        for meeting in group.iter() {
-            let force = meeting.normal_force + meeting.friction;
-            let [a, b] = meeting.slots.map(|s| s as usize);
-            let masses = [nodes[a].mass, nodes[b].mass];
-            nodes[a].acceleration -= force / masses[0];
-            nodes[b].acceleration += force / masses[1];
+    meetings.iter_mut().for_each(Meeting::begin);
+    let sweeps = if rigid.is_empty() { 1 } else { SWEEPS };
+    for _ in 0..sweeps {
+        let (mut changed, mut total) = (0.0, 0.0);
+        for group in meetings.chunk_by_mut(|a, b| same_node(active, a, b)) {
+            let free = free(constraints, active, &group[0]);
+            for (field, slot) in slots(active, group) {
+                let node = &nodes[slot];
+                masses[field] = match rigid_of_field[field] {
+                    Some(r) => Mass {
+                        inverse: 1.0 / rigid[r].mass,
+                        velocity: rigid[r].velocity,
+                    },
+                    None => Mass {
+                        inverse: 1.0 / node.mass,
+                        velocity: node.velocity + node.acceleration * h,
+                    },
+                };
+            }
+            let of = |m: &Meeting| fields(active, m);
+            let [change, all] = solve(group, of, masses, &free, strength);
+            changed += change;
+            total += all;
+            if change == 0.0 {
+                continue;
+            }
+            for (field, slot) in slots(active, group) {
+                let (node, velocity) = (&mut nodes[slot], masses[field].velocity);
+                match rigid_of_field[field] {
+                    // What holds the body elsewhere takes the rest.
+                    Some(r) => rigid[r].velocity = rigid[r].free * velocity,
+                    None => node.acceleration = (velocity - node.velocity) / h,
+                }
+            }
+        }
+        if changed <= 1e-13 * total {
+            break;
         }
     }
-    contacts.take_stock(active);
-    sim.contacts = contacts;
-    if before > 0.0 {
-        work(sim);
+    meetings.iter_mut().for_each(|m| m.settle(h));
+    for body in rigid.iter() {
+        super::rigid::spread(body, active, nodes, h);
     }
 }
 
@@ -77,19 +129,27 @@ pub(super) fn remap(sim: &mut Simulation, velocity: impl Fn(&mut Node) -> &mut V
         ..
     } = sim;
     let Contacts {
-        meetings, masses, ..
+        meetings,
+        masses,
+        rigid_of_field,
+        ..
     } = contacts;
     for group in meetings.chunk_by(|a, b| same_node(active, a, b)) {
         if group.iter().all(|m| m.state == State::Open) {
             continue;
         }
         let free = free(constraints, active, &group[0]);
-        load(masses, group, active, |slot| {
-            (nodes[slot].mass, *velocity(&mut nodes[slot]))
-        });
+        for (field, slot) in slots(active, group) {
+            let inverse = match rigid_of_field[field] {
+                Some(_) => 0.0,
+                None => 1.0 / nodes[slot].mass,
+            };
+            let velocity = *velocity(&mut nodes[slot]);
+            masses[field] = Mass { inverse, velocity };
+        }
         move_together(group, |m| fields(active, m), masses, &free);
-        for slot in group.iter().flat_map(|m| m.slots).map(|s| s as usize) {
-            *velocity(&mut nodes[slot]) = masses[active.field(slot)].velocity;
+        for (field, slot) in slots(active, group) {
+            *velocity(&mut nodes[slot]) = masses[field].velocity;
         }
     }
 }
@@ -119,31 +179,26 @@ fn free(constraints: &Constraints, active: &Active, meeting: &Meeting) -> Mat3 {
     constraints.of(node).map_or(Mat3::IDENTITY, |c| c.free)
 }
 
-/// Masses and velocities of the fields at a node.
-fn load(
-    masses: &mut [Mass],
-    group: &[Meeting],
-    active: &Active,
-    mut of: impl FnMut(usize) -> (f64, Vec3),
-) {
-    for slot in group.iter().flat_map(|m| m.slots).map(|s| s as usize) {
-        let (mass, velocity) = of(slot);
-        masses[active.field(slot)] = Mass { mass, velocity };
-    }
+/// Fields and nodes of a group of meetings; one comes up as often as it meets others.
+fn slots<'a>(
+    active: &'a Active,
+    group: &'a [Meeting],
+) -> impl Iterator<Item = (usize, usize)> + use<'a> {
+    let slots = group.iter().flat_map(|m| m.slots).map(|s| s as usize);
+    slots.map(|slot| (active.field(slot), slot))
 }
 
 /// A meeting with its normals, gaps and area as they are now.
-fn met(sim: &Simulation, contacts: &mut Contacts, mut meeting: Meeting, drift: f64) -> Meeting {
+fn met(sim: &Simulation, contacts: &Contacts, mut meeting: Meeting, drift: f64) -> Meeting {
     let Some(number) = meeting.contact else {
         return meeting;
     };
     let active = &sim.active;
     let contact = &sim.plan.contacts[number as usize];
     let free = free(&sim.constraints, active, &meeting);
-    let mut balls = std::mem::take(&mut contacts.balls);
-    for (balls, slot) in balls.iter_mut().zip(meeting.slots) {
-        fill(balls, sim, contacts, slot as usize);
-    }
+    let [a, b] = meeting
+        .slots
+        .map(|slot| move || balls(sim, contacts, slot as usize));
     let faces = match contact.surface {
         ContactSurface::Aligned => face_normals(sim, contacts, &meeting, number),
         ContactSurface::Free => None,
@@ -160,7 +215,8 @@ fn met(sim: &Simulation, contacts: &mut Contacts, mut meeting: Meeting, drift: f
         for n in normals[..count].iter().map(|n| free * *n) {
             if n.length() > LEAST_NORMAL {
                 let n = n.normalize();
-                add(n, gap(&balls[0], &balls[1], n));
+                let gap = -outermost(b(), -n).1 - outermost(a(), n).1;
+                add(n, gap);
             }
         }
         meeting.area = area;
@@ -171,13 +227,12 @@ fn met(sim: &Simulation, contacts: &mut Contacts, mut meeting: Meeting, drift: f
             .map(|s| free * volume_gradient(sim, s as usize));
         let n = (gradients[0] - gradients[1]).normalize_or_zero();
         if n != Vec3::ZERO {
-            let (n, gap) = separate(&balls[0], &balls[1], n, &free);
+            let (n, gap) = separate(a, b, n, &free);
             add(n, gap);
             let [a, b] = gradients.map(|g| g.dot(n).abs());
             meeting.area = a.min(b);
         }
     }
-    contacts.balls = balls;
     meeting
 }
 
@@ -215,27 +270,20 @@ fn volume_gradient(sim: &Simulation, slot: usize) -> Vec3 {
     active.attached(slot).iter().map(gradient).sum()
 }
 
-/// The particles around a node that can be the outermost of their body.
-fn fill(balls: &mut Vec<Ball>, sim: &Simulation, contacts: &Contacts, slot: usize) {
+/// The particles of a node's field around it.
+fn balls<'a>(
+    sim: &'a Simulation,
+    contacts: &'a Contacts,
+    slot: usize,
+) -> impl Iterator<Item = Ball> + use<'a> {
     let (active, particles) = (&sim.active, &sim.particles);
     let origin = sim.plan.mesh.nodes[active.nodes[slot] as usize];
-    balls.clear();
-    for &(c, _) in active.attached(slot) {
-        let c = c as usize;
-        for p in active.offsets[c] as usize..active.offsets[c + 1] as usize {
-            let depth = contacts.depth[particles.id[p] as usize];
-            balls.push((particles.position[p] - origin, depth));
-        }
-    }
-}
-
-/// Distance along n between two bodies, m.
-fn gap(a: &[Ball], b: &[Ball], n: Vec3) -> f64 {
-    let reach = |balls: &[Ball], n: Vec3| {
-        let reach = balls.iter().map(|(x, depth)| x.dot(n) + depth);
-        reach.fold(f64::NEG_INFINITY, f64::max)
-    };
-    -reach(b, -n) - reach(a, n)
+    let cells = active.attached(slot).iter().map(|a| a.0 as usize);
+    let inside = cells.flat_map(|c| active.offsets[c] as usize..active.offsets[c + 1] as usize);
+    inside.map(move |p| {
+        let depth = contacts.depth[particles.id[p] as usize];
+        (particles.position[p] - origin, depth)
+    })
 }
 
 impl Contacts {

@@ -26,6 +26,7 @@ mod contact;
 mod correction;
 mod nodes;
 mod remap;
+mod rigid;
 mod smoothing;
 mod state;
 mod strain;

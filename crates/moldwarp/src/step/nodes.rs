@@ -1,7 +1,7 @@
 //! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
-use super::{Active, BLOCK, Node, contact};
+use super::{Active, BLOCK, Node, contact, rigid};
 use crate::boundary::AbsorbingNode;
 use crate::measure::{DriftWork, Forces};
 use crate::mesh::Mesh;
@@ -76,6 +76,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             node.reaction = node.acceleration * node.mass - force;
         }
     });
+    rigid::predict(sim, h);
     contact::kick(sim, before, after);
     book(sim, before > 0.0);
 }

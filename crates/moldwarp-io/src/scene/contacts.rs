@@ -7,23 +7,32 @@ use super::raw::{RawContact, Text, Texts};
 use super::surfaces::unique;
 use super::values::{choose, find, fits_a_column, not_negative, placed};
 use moldwarp::contact::{ContactError, Fields};
-use moldwarp::plan::{Body, Contact, ContactSurface};
+use moldwarp::material::Material;
+use moldwarp::plan::{Body, Contact, ContactSurface, NamedMaterial, Stage};
 use std::ops::Range;
 
 /// A body and where its name stands.
 type Placed = (usize, Range<usize>);
 
-/// `flows` says which bodies are of a plastic material in some stage.
 pub(super) fn contacts(
     raw: &[Spanned<RawContact>],
     bodies: &[Body],
-    flows: impl Fn(usize) -> bool,
+    (materials, stages): (&[NamedMaterial], &[Stage]),
 ) -> Result<Vec<Contact>, Fault> {
     check_names(raw)?;
+    let rigid = |b: usize| materials[bodies[b].material].model.is_rigid();
+    // A stage may make a body plastic.
+    let flows = |b: usize| {
+        let later = stages.iter().flat_map(|s| &s.materials);
+        let later = later.filter(|c| c.0 == b).map(|c| c.1);
+        let mut all = later.chain([bodies[b].material]);
+        all.any(|m| matches!(materials[m].model, Material::MohrCoulomb(_)))
+    };
     let mut contacts: Vec<Contact> = Vec::new();
     for item in raw {
         let raw_contact = item.get_ref();
         let sides = sides(&raw_contact.bodies, bodies)?;
+        check_rigid(&sides, bodies, rigid)?;
         let sides = sides.map(|side| side.into_iter().map(|b| b.0).collect::<Vec<_>>());
         let friction = raw_contact.friction.as_ref();
         let adhesion = raw_contact.adhesion.as_ref();
@@ -48,7 +57,8 @@ pub(super) fn contacts(
             bodies: sides,
         });
     }
-    check_fields(raw, &contacts, bodies)?;
+    let fields = Fields::new(bodies.len(), &contacts, rigid);
+    check_fields(raw, &contacts, &fields)?;
     Ok(contacts)
 }
 
@@ -153,13 +163,30 @@ fn side(raw: &Texts, bodies: &[Body]) -> Result<Vec<Placed>, Fault> {
     Ok(found)
 }
 
+/// A rigid body has a velocity of its own.
+fn check_rigid(
+    sides: &[Vec<Placed>; 2],
+    bodies: &[Body],
+    rigid: impl Fn(usize) -> bool,
+) -> Result<(), Fault> {
+    let mut several = sides.iter().filter(|side| side.len() > 1).flatten();
+    match several.find(|body| rigid(body.0)) {
+        None => Ok(()),
+        Some((body, place)) => Err(Fault::new(format!(
+            "the rigid body `{}` cannot hang together with others",
+            bodies[*body].name
+        ))
+        .at(place.clone(), "has a velocity of its own")
+        .help("give it a contact of its own with the other side")),
+    }
+}
+
 /// Bodies that hang together have one velocity field, in all contacts; two fields have one contact.
 fn check_fields(
     raw: &[Spanned<RawContact>],
     contacts: &[Contact],
-    bodies: &[Body],
+    fields: &Fields,
 ) -> Result<(), Fault> {
-    let fields = Fields::new(bodies.len(), contacts);
     let field = |b: usize| fields.of(b as u16);
     let place = |k: usize| raw[k].get_ref().bodies.span();
     let pair = |contact: &Contact| contact.bodies.each_ref().map(|side| field(side[0]));

@@ -44,7 +44,6 @@ pub(crate) use overrides::{keys, no_path, value};
 #[cfg(test)]
 pub(crate) use {quantity::dimensions, unsupported::later};
 
-use moldwarp::material::Material;
 use moldwarp::particles::SeedingError;
 use moldwarp::step::TimeStepError;
 use moldwarp::{Particles, Plan, SetupError};
@@ -271,14 +270,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     presence.check_k0(&raw.bodies.0)?;
     let stages = stages::stages(&raw.stages, &named, &presence)?;
     presence.check_loads(&raw.loads, (&loads, &stages))?;
-    // A stage may make a body plastic.
-    let flows = |body: usize| {
-        let later = stages.iter().flat_map(|s| &s.materials);
-        let later = later.filter(|c| c.0 == body).map(|c| c.1);
-        let mut all = later.chain([bodies[body].material]);
-        all.any(|m| matches!(materials[m].model, Material::MohrCoulomb(_)))
-    };
-    let contacts = contacts::contacts(&raw.contacts, &bodies, flows)?;
+    let contacts = contacts::contacts(&raw.contacts, &bodies, (&materials, &stages))?;
     presence.check_contacts(&raw.contacts, &contacts)?;
     notes.extend(presence.notes());
     let raw_bodies = raw.bodies.0.iter().map(|b| &b.1);

@@ -83,6 +83,7 @@ fn materials() -> [Material; 2] {
     [
         Material::LinearElastic(elastic),
         Material::MohrCoulomb(soil),
+        Material::Rigid,
     ]
 }
 
@@ -94,6 +95,7 @@ fn state_variables() -> Vec<(StateField, Vec<&'static str>)> {
         let model = match material {
             Material::LinearElastic(_) => "linear-elastic",
             Material::MohrCoulomb(_) => "mohr-coulomb",
+            Material::Rigid => "rigid",
         };
         for field in material.state_fields() {
             match found.iter_mut().find(|f| f.0.name == field.name) {

@@ -40,10 +40,20 @@ fn body(
         (None, None) => return Err(Fault::new("a body needs a place")),
     };
     let names = materials.iter().map(|m| m.name.as_str());
+    let material = find(placed(&raw.material), "material", "materials", names)?;
+    if let Some(k0) = raw
+        .k0
+        .as_ref()
+        .filter(|_| materials[material].model.is_rigid())
+    {
+        return Err(Fault::new("a rigid body has no stress")
+            .at(k0.span(), "so it has no K0")
+            .help("leave this out"));
+    }
     Ok(Body {
         name: name.get_ref().clone(),
         place,
-        material: find(placed(&raw.material), "material", "materials", names)?,
+        material,
         seeding: seeding(raw.particles_per_element.as_ref())?,
     })
 }

@@ -36,25 +36,37 @@ enum Model {
     /// The same until it yields, with a tension cut-off; see
     /// [what is not there yet](../limits.md#what-is-not-there-yet).
     MohrCoulomb,
+    /// Bodies move as one, without turning; see [rigid bodies](../theory/method.md#rigid-bodies).
+    Rigid,
 }
 
 fn model(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
     let models = [
         ("linear-elastic", Model::LinearElastic),
         ("mohr-coulomb", Model::MohrCoulomb),
+        ("rigid", Model::Rigid),
+    ];
+    let plastic = [
+        ("cohesion", span(&raw.cohesion)),
+        ("friction_angle", span(&raw.friction_angle)),
+        ("dilation_angle", span(&raw.dilation_angle)),
+        ("tension_cutoff", span(&raw.tension_cutoff)),
     ];
     match choose(placed(&raw.model), "model", &models, &[])? {
         Model::LinearElastic => {
-            let plastic = [
-                ("cohesion", span(&raw.cohesion)),
-                ("friction_angle", span(&raw.friction_angle)),
-                ("dilation_angle", span(&raw.dilation_angle)),
-                ("tension_cutoff", span(&raw.tension_cutoff)),
-            ];
             foreign(&raw.model, &plastic)?;
             elastic((name.span(), "a linear-elastic material"), raw).map(Material::LinearElastic)
         }
         Model::MohrCoulomb => mohr_coulomb(name, raw),
+        Model::Rigid => {
+            let elastic = [
+                ("young_modulus", span(&raw.young_modulus)),
+                ("poisson_ratio", span(&raw.poisson_ratio)),
+            ];
+            foreign(&raw.model, &elastic)?;
+            foreign(&raw.model, &plastic)?;
+            Ok(Material::Rigid)
+        }
     }
 }
 

@@ -75,8 +75,16 @@ fn stage(
         presence.needed(number, place, body.span())?;
         let names = named.materials.iter().map(|m| m.name.as_str());
         let other = find(placed(material), "material", "materials", names)?;
-        let [before, after] =
-            [named.bodies[place].material, other].map(|m| named.materials[m].density);
+        let both = [named.bodies[place].material, other].map(|m| &named.materials[m]);
+        if both.iter().any(|m| m.model.is_rigid()) {
+            return Err(Fault::new(format!(
+                "body `{}` cannot change between rigid and other materials",
+                body.get_ref()
+            ))
+            .at(material.span(), "a rigid body is so from the start")
+            .help("leave this out"));
+        }
+        let [before, after] = both.map(|m| m.density);
         if before != after {
             return Err(Fault::new(format!(
                 "material `{}` has another density than body `{}`, whose mass stays",

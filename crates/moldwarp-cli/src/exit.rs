@@ -12,8 +12,8 @@ pub enum Exit {
     /// Wrong input or arguments; no output was written.
     Input = 2,
     /// A guard stopped the run: a particle left the mesh, an element turned over, a body was to be
-    /// added where another one is, there is no stable step, or the forced one is above it. What was computed is kept, with a last frame
-    /// and row.
+    /// added where another one is, a particle passed a face of a contact, there is no stable step, or
+    /// the forced one is above it. What was computed is kept, with a last frame and row.
     Guard = 3,
     /// Reading or writing failed during the run.
     Files = 4,
@@ -27,6 +27,7 @@ pub fn of_stop(stop: &Stop) -> Exit {
     match stop {
         Stop::NotAtRest { .. } => Exit::NotAtRest,
         Stop::LeftTheMesh { .. }
+        | Stop::PassedAFace { .. }
         | Stop::TurnedOver { .. }
         | Stop::NoRoom { .. }
         | Stop::TimeStep { .. } => Exit::Guard,

@@ -81,6 +81,12 @@ pub enum Region {
         end: Vec3,
         radius: f64,
     },
+    /// From its apex, where its radius is 0, to the plane through its end.
+    Cone {
+        apex: Vec3,
+        end: Vec3,
+        radius: f64,
+    },
     /// The side of the plane that the normal points away from.
     HalfSpace {
         point: Vec3,
@@ -97,6 +103,12 @@ impl Region {
                 let axis = end - start;
                 let along = (x - start).dot(axis) / axis.length_squared();
                 (0.0..=1.0).contains(&along) && (x - start - along * axis).length() <= radius
+            }
+            Region::Cone { apex, end, radius } => {
+                let axis = end - apex;
+                let along = (x - apex).dot(axis) / axis.length_squared();
+                let across = (x - apex - along * axis).length();
+                (0.0..=1.0).contains(&along) && across <= radius * along
             }
             Region::HalfSpace { point, normal } => (x - point).dot(normal) <= 0.0,
         }

@@ -90,6 +90,11 @@ impl Simulation {
         self.ledger.turned_over()
     }
 
+    /// Particles that were put back onto their side of aligned contacts.
+    pub fn projections(&self) -> crate::contact::Projections {
+        self.contacts.projections
+    }
+
     /// Sum of the nodal masses, kg.
     pub fn nodal_mass(&self) -> f64 {
         self.nodes.iter().map(|n| n.mass).sum()

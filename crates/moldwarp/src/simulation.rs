@@ -68,6 +68,18 @@ pub enum Stop {
         time: f64,
     },
     #[error(
+        "particle {id} of body `{body}` passed a face of an aligned contact by more than a tenth of an \
+         element at {position} m, {time:e} s after the start in stage `{stage}`: the bodies move \
+         through the mesh; make the contact free"
+    )]
+    PassedAFace {
+        id: u32,
+        body: String,
+        position: Vec3,
+        stage: String,
+        time: f64,
+    },
+    #[error(
         "element {element} (counted from 0) turned over as the mesh followed an absorbing \
          boundary, {time:e} s after the start in stage `{stage}`: the boundary yields by more than \
          an element; give it a virtual thickness, or larger elements next to it"
@@ -228,7 +240,10 @@ impl Simulation {
                 second,
                 element,
             }),
-            Stop::LeftTheMesh { .. } | Stop::TurnedOver { .. } | Stop::NotAtRest { .. } => {
+            Stop::LeftTheMesh { .. }
+            | Stop::PassedAFace { .. }
+            | Stop::TurnedOver { .. }
+            | Stop::NotAtRest { .. } => {
                 unreachable!("nothing has moved yet")
             }
         })?;
@@ -342,6 +357,25 @@ impl Simulation {
             element,
             stage,
             time: self.clock.time,
+        }
+    }
+
+    pub(crate) fn passed_a_face(&self, particle: usize) -> Stop {
+        match self.left_the_mesh(particle) {
+            Stop::LeftTheMesh {
+                id,
+                body,
+                position,
+                stage,
+                time,
+            } => Stop::PassedAFace {
+                id,
+                body,
+                position,
+                stage,
+                time,
+            },
+            other => other,
         }
     }
 

@@ -235,3 +235,38 @@ fn momentum_passes_from_body_to_body() {
         assert!(e.residual.abs() < 1e-12 * sim.energy_turned_over());
     }
 }
+
+/// The base yields under the block by more than its particles' distance from the face: they are put
+/// back above it, each time by a hair.
+#[test]
+fn particles_do_not_pass_an_aligned_face() {
+    let pressed = |young_modulus: f64| {
+        let mut plan = incline(0.1, contact(0.5, ContactSurface::Aligned));
+        plan.gravity = Vec3::new(0.0, 0.0, -G);
+        let soft = LinearElastic {
+            young_modulus,
+            poisson_ratio: 0.0,
+        };
+        plan.materials.push(NamedMaterial {
+            name: "foam".into(),
+            density: 100.0,
+            model: Material::LinearElastic(soft),
+        });
+        plan.bodies[0].material = 1;
+        plan.numerics.damping = 0.5;
+        let mut sim = Simulation::new(plan).unwrap();
+        while !sim.finished() {
+            sim.step().unwrap();
+        }
+        sim
+    };
+    let sim = pressed(6e3);
+    let p = sim.particles();
+    let block = (0..p.len()).filter(|&i| p.body[i] == 1);
+    let lowest = block.map(|i| p.position[i].z).fold(f64::INFINITY, f64::min);
+    let put_back = sim.projections();
+    println!("lowest particle at {lowest} m, {put_back:?}");
+    assert!(lowest > BASE);
+    assert!(put_back.count > 0 && put_back.greatest < 0.1 * 0.1);
+    assert!(sim.energies().residual.abs() < 1e-12 * sim.energy_turned_over());
+}

@@ -112,6 +112,9 @@ enum Kind {
     Sphere,
     /// Between the planes through both ends of its axis.
     Cylinder,
+    /// From its apex, `start`, to the plane through the other `end` of its axis, where it has its
+    /// `radius`.
+    Cone,
     /// The side of a plane that its normal points away from.
     HalfSpace,
 }
@@ -128,6 +131,7 @@ fn region(raw: &Spanned<RawRegion>) -> Result<Region, Fault> {
                 ("box", Kind::Box),
                 ("sphere", Kind::Sphere),
                 ("cylinder", Kind::Cylinder),
+                ("cone", Kind::Cone),
                 ("half-space", Kind::HalfSpace),
             ],
             &[],
@@ -162,6 +166,11 @@ fn region(raw: &Spanned<RawRegion>) -> Result<Region, Fault> {
             end: at("end", &raw.end)?,
             radius: radius()?,
         },
+        Kind::Cone => Region::Cone {
+            apex: at("start", &raw.start)?,
+            end: at("end", &raw.end)?,
+            radius: radius()?,
+        },
         Kind::HalfSpace => {
             let owner = (place.clone(), "a half-space");
             let normal = required(owner, "normal", &raw.normal, "[0, 0, 1]")?;
@@ -179,9 +188,13 @@ fn refuse_others(kind: Kind, raw: &RawRegion) -> Result<(), Fault> {
         ("min", span(&raw.min), &[Kind::Box][..]),
         ("max", span(&raw.max), &[Kind::Box]),
         ("centre", span(&raw.centre), &[Kind::Sphere]),
-        ("radius", span(&raw.radius), &[Kind::Sphere, Kind::Cylinder]),
-        ("start", span(&raw.start), &[Kind::Cylinder]),
-        ("end", span(&raw.end), &[Kind::Cylinder]),
+        (
+            "radius",
+            span(&raw.radius),
+            &[Kind::Sphere, Kind::Cylinder, Kind::Cone],
+        ),
+        ("start", span(&raw.start), &[Kind::Cylinder, Kind::Cone]),
+        ("end", span(&raw.end), &[Kind::Cylinder, Kind::Cone]),
         ("point", span(&raw.point), &[Kind::HalfSpace]),
         ("normal", span(&raw.normal), &[Kind::HalfSpace]),
     ];
@@ -201,7 +214,10 @@ fn refuse_others(kind: Kind, raw: &RawRegion) -> Result<(), Fault> {
 fn not_degenerate(region: Region, place: std::ops::Range<usize>) -> Result<Region, Fault> {
     let wrong = match region {
         Region::Box { min, max } if !min.cmplt(max).all() => "`min` must be less than `max`",
-        Region::Cylinder { start, end, .. } if start == end => "`start` and `end` must differ",
+        Region::Cylinder { start, end, .. }
+        | Region::Cone {
+            apex: start, end, ..
+        } if start == end => "`start` and `end` must differ",
         Region::HalfSpace { normal, .. } if normal == Vec3::ZERO => "`normal` must not be zero",
         _ => return Ok(region),
     };

@@ -253,13 +253,13 @@ pub(super) struct RawRegion {
     /// type: length × 3
     /// default: required
     pub max: Option<RawVector>,
-    /// One end of the axis.
-    /// for: cylinder
+    /// One end of the axis; the apex of a cone.
+    /// for: cylinder, cone
     /// type: length × 3
     /// default: required
     pub start: Option<RawVector>,
     /// Its other end.
-    /// for: cylinder
+    /// for: cylinder, cone
     /// type: length × 3
     /// default: required
     pub end: Option<RawVector>,
@@ -268,8 +268,8 @@ pub(super) struct RawRegion {
     /// type: length × 3
     /// default: required
     pub centre: Option<RawVector>,
-    /// Of the sphere, or of the cylinder round its axis.
-    /// for: sphere, cylinder
+    /// Of the sphere, of the cylinder round its axis, of the cone at its end.
+    /// for: sphere, cylinder, cone
     /// type: length > 0
     /// default: required
     pub radius: Option<RawAmount>,

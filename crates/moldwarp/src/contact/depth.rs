@@ -94,6 +94,10 @@ pub(super) fn at(faces: &[(u32, Face)], node: u32) -> impl Iterator<Item = Face>
 /// Distance of a point in a region to its surface; planes that bound the mesh do not count.
 fn region_depth(region: &Region, bounds: &[Vec3; 2], x: Vec3) -> f64 {
     let size = (bounds[1] - bounds[0]).max_element();
+    let inside = |c: Vec3| {
+        let margin = (c - bounds[0]).min(bounds[1] - c);
+        margin.min_element() > 1e-9 * size
+    };
     match *region {
         Region::Box { min, max } => {
             let mut depth = f64::INFINITY;
@@ -113,10 +117,6 @@ fn region_depth(region: &Region, bounds: &[Vec3; 2], x: Vec3) -> f64 {
             let along = (end - start) / length;
             let height = (x - start).dot(along);
             let mut depth = radius - (x - start - height * along).length();
-            let inside = |c: Vec3| {
-                let margin = (c - bounds[0]).min(bounds[1] - c);
-                margin.min_element() > 1e-9 * size
-            };
             if inside(start) {
                 depth = depth.min(height);
             }
@@ -124,6 +124,19 @@ fn region_depth(region: &Region, bounds: &[Vec3; 2], x: Vec3) -> f64 {
                 depth = depth.min(length - height);
             }
             depth
+        }
+        Region::Cone { apex, end, radius } => {
+            let length = (end - apex).length();
+            let along = (end - apex) / length;
+            let height = (x - apex).dot(along);
+            let across = (x - apex - height * along).length();
+            // The distance from the flank is that across, by the cosine of the half angle.
+            let flank = (radius * height / length - across) * length / length.hypot(radius);
+            if inside(end) {
+                flank.min(length - height)
+            } else {
+                flank
+            }
         }
         Region::HalfSpace { point, normal } => (point - x).dot(normal) / normal.length(),
     }

@@ -18,7 +18,7 @@ pub use rigid::{HeldDirections, Rigid, is_rigid};
 pub use separation::{Ball, outermost, separate};
 
 use crate::Vec3;
-use crate::mesh::{Face, Mesh};
+use crate::mesh::{Face, Mesh, NONE};
 use crate::particles::Particles;
 use crate::plan::{Contact, ContactSurface, Plan};
 use crate::step::Active;
@@ -36,6 +36,23 @@ pub struct Tally {
     pub sticking: u32,
     pub sliding: u32,
     pub open: u32,
+}
+
+/// Particles that were put back onto their side of an aligned face.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Projections {
+    pub count: u64,
+    /// Sum of the distances, and the greatest, m.
+    pub sum: f64,
+    pub greatest: f64,
+}
+
+impl Projections {
+    pub(crate) fn add(&mut self, distance: f64) {
+        self.count += 1;
+        self.sum += distance;
+        self.greatest = self.greatest.max(distance);
+    }
 }
 
 /// Why a contact cannot be used.
@@ -63,6 +80,10 @@ pub struct Contacts {
     faces: Vec<Vec<(u32, Face)>>,
     /// Ordered by grid node.
     pub meetings: Vec<Meeting>,
+    /// Field of the aligned structure that fills each element, or [`NONE`]; nothing if there is none.
+    structure: Vec<u32>,
+    /// Particles that were put back onto their side of a face.
+    pub projections: Projections,
     /// Whether fields meet at each node of the step; nothing if there is one field only.
     meets: Vec<bool>,
     pub tallies: Vec<Tally>,
@@ -94,10 +115,14 @@ impl Contacts {
             contacts.of_fields[a * count + b] = Some(number as u32);
             contacts.of_fields[b * count + a] = Some(number as u32);
             contacts.first.push(a);
-            contacts.faces.push(match contact.surface {
-                ContactSurface::Aligned => aligned(&plan.mesh, contact, particles, offsets)?,
-                ContactSurface::Free => Vec::new(),
-            });
+            contacts.faces.push(Vec::new());
+            if contact.surface == ContactSurface::Aligned {
+                let inside = elements(&plan.mesh, contact, particles, offsets)?;
+                contacts.faces[number] = depth::faces_by_node(&plan.mesh, &inside);
+                contacts.structure.resize(inside.len(), NONE);
+                let own = contacts.structure.iter_mut().zip(inside).filter(|e| e.1);
+                own.for_each(|(field, _)| *field = a as u32);
+            }
         }
         contacts.rigid = rigid::bodies(plan, fields);
         contacts.rigid_of_field = vec![None; count];
@@ -139,6 +164,56 @@ impl Contacts {
     /// Whether a field is the first side of a contact.
     pub fn is_first(&self, contact: u32, field: usize) -> bool {
         self.first[contact as usize] == field
+    }
+
+    /// Whether a particle of a field must not go from an element to another one: it would pass a face
+    /// of an aligned contact.
+    #[inline]
+    pub fn blocks(&self, field: usize, from: u32, to: u32) -> bool {
+        if self.structure.is_empty() {
+            return false;
+        }
+        let [from, to] = [from, to].map(|e| self.structure[e as usize]);
+        let leaves = from == field as u32 && to != from;
+        leaves || (to != NONE && to != from && self.aligned(field, to).is_some())
+    }
+
+    /// The aligned contact of a field with a structure.
+    fn aligned(&self, field: usize, structure: u32) -> Option<u32> {
+        let contact = self.of(field, structure as usize)?;
+        let first = self.first[contact as usize] == structure as usize;
+        (first && !self.faces[contact as usize].is_empty()).then_some(contact)
+    }
+
+    /// The face that a particle of a field has passed on its way from an element to another one: the
+    /// normal back to its side, and how far it is beyond, m.
+    pub fn passed(
+        &self,
+        mesh: &Mesh,
+        field: usize,
+        from: u32,
+        to: u32,
+        x: Vec3,
+    ) -> Option<(Vec3, f64)> {
+        let leaves = self.structure[from as usize] == field as u32;
+        let contact = if leaves {
+            let own = |&k: &usize| self.first[k] == field && !self.faces[k].is_empty();
+            (0..self.first.len()).find(own)? as u32
+        } else {
+            self.aligned(field, self.structure[to as usize])?
+        };
+        let nodes = mesh.tets[if leaves { from } else { to } as usize];
+        let faces = nodes
+            .into_iter()
+            .flat_map(|n| depth::at(&self.faces[contact as usize], n));
+        let beyond = faces.map(|face| {
+            let n = mesh.face_area(face).normalize() * if leaves { -1.0 } else { 1.0 };
+            let origin = mesh.nodes[mesh.face_nodes(face)[0] as usize];
+            (n, (origin - x).dot(n))
+        });
+        // Of the faces that it is behind the one that it has passed by least.
+        let behind = beyond.filter(|b| b.1 >= 0.0);
+        behind.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Whether fields meet at a node.
@@ -206,13 +281,13 @@ impl Contacts {
     }
 }
 
-/// The faces of an aligned contact's first side by node.
-fn aligned(
+/// The elements that an aligned contact's first side fills.
+fn elements(
     mesh: &Mesh,
     contact: &Contact,
     particles: &Particles,
     offsets: &[u32],
-) -> Result<Vec<(u32, Face)>, ContactError> {
+) -> Result<Vec<bool>, ContactError> {
     let mut inside = vec![false; mesh.tets.len()];
     for (e, inside) in inside.iter_mut().enumerate() {
         let held = offsets[e] as usize..offsets[e + 1] as usize;
@@ -226,7 +301,7 @@ fn aligned(
             });
         }
     }
-    Ok(depth::faces_by_node(mesh, &inside))
+    Ok(inside)
 }
 
 /// A rigid body has a velocity of its own.

@@ -1,8 +1,8 @@
 //! Stages 7 and 8: particles move with the nodes, the mesh follows its boundaries, and each
 //! particle's element is found anew.
 
-use super::BLOCK;
 use super::state::moved;
+use super::{BLOCK, guard};
 use crate::Vec3;
 use crate::parallel::{ByCell, First, fold};
 use crate::simulation::{Simulation, Stop};
@@ -71,17 +71,24 @@ fn locate(sim: &mut Simulation) -> Result<bool, Stop> {
         plan,
         particles,
         active,
+        fields,
+        contacts,
         ..
     } = sim;
-    let (mesh, position) = (&plan.mesh, &particles.position);
+    let (mesh, position, body) = (&plan.mesh, &particles.position, &particles.body);
+    let (fields, contacts) = (&*fields, &*contacts);
     let block = ByCell::new(&active.offsets, &mut particles.element[..]);
-    let (outside, crossed) = fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {
+    let (outside, (crossed, passed)) = fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {
         let first = block.first();
         let (mut outside, mut crossed) = (First::default(), First::default());
+        let mut passed = First::default();
         for (k, element) in block.particles.iter_mut().enumerate() {
             let p = first + k;
             match mesh.walk(*element, position[p]) {
                 Some(found) if found == *element => {}
+                Some(found) if contacts.blocks(fields.of(body[p]), *element, found) => {
+                    passed.0 = passed.0.min(p as u32);
+                }
                 Some(found) => {
                     *element = found;
                     crossed.0 = crossed.0.min(p as u32);
@@ -89,10 +96,14 @@ fn locate(sim: &mut Simulation) -> Result<bool, Stop> {
                 None => outside.0 = outside.0.min(p as u32),
             }
         }
-        (outside, crossed)
+        (outside, (crossed, passed))
     });
     if outside.0 != u32::MAX {
         return Err(sim.left_the_mesh(outside.0 as usize));
     }
-    Ok(crossed.0 != u32::MAX)
+    let mut crossed = crossed.0 != u32::MAX;
+    if passed.0 != u32::MAX {
+        crossed |= guard::put_back(sim)?;
+    }
+    Ok(crossed)
 }

@@ -24,6 +24,7 @@ mod active;
 mod advance;
 mod contact;
 mod correction;
+mod guard;
 mod nodes;
 mod remap;
 mod rigid;

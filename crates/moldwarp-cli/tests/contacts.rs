@@ -40,11 +40,13 @@ name = "sole"
 bodies = ["block", "floor"]
 friction = 0.3
 
+[numerics]
+viscosity = "3 ms"
+
 [[stages]]
 name = "rest"
 until = "equilibrium"
 duration = "20 s"
-damping = 0.7
 equilibrium = { unbalanced = 1e-4, kinetic = 1e-6 }
 
 [output]
@@ -92,16 +94,12 @@ fn a_block_presses_with_its_weight_on_the_floor() {
             *column.unwrap().last().unwrap()
         };
         let pressed = last("normal.z");
-        for what in columns.split(' ') {
-            println!("{surface} {what} {}", last(what));
-        }
-        println!("{weight} {:?}", bench.summary("out/column"));
         assert!(
             (pressed / weight - 1.0).abs() < 1e-3,
             "{surface}: {pressed} N"
         );
         for along in ["normal.x", "normal.y", "tangential.x", "tangential.y"] {
-            assert!(last(along).abs() < 1e-3 * weight, "{surface}: {along}");
+            assert!(last(along).abs() < 3e-3 * weight, "{surface}: {along}");
         }
         // The block's sole has nine nodes.
         assert_eq!(last("sticking") + last("sliding") + last("open"), 9.0);

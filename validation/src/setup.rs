@@ -128,6 +128,8 @@ pub struct Balance {
     pub residual: f64,
     /// Greatest sum of the absolute numerical terms over the energy turned over.
     pub numerical: f64,
+    /// What impulses along the normals of contacts have taken, over the energy turned over.
+    pub contact: f64,
 }
 
 /// Runs to the end; `look` is called at the start and after every step.
@@ -153,6 +155,7 @@ pub fn run_from(mut simulation: Simulation, mut look: impl FnMut(&Simulation)) -
     Balance {
         residual: residual / whole,
         numerical: numerical / whole,
+        contact: simulation.energies().contact / whole,
     }
 }
 

@@ -35,4 +35,9 @@ coarse! {
     thick_cylinder = "thick-cylinder",
     heap = "heap",
     collapse_smoothing = "collapse-smoothing",
+    sliding_block = "sliding-block",
+    spheres = "spheres",
+    stack = "stack",
+    penetration = "penetration",
+    drop = "drop",
 }

@@ -95,6 +95,11 @@ impl Simulation {
         self.contacts.projections
     }
 
+    /// What each contact of the plan does now.
+    pub fn contact_tallies(&self) -> &[crate::contact::Tally] {
+        &self.contacts.tallies
+    }
+
     /// Sum of the nodal masses, kg.
     pub fn nodal_mass(&self) -> f64 {
         self.nodes.iter().map(|n| n.mass).sum()

@@ -3,6 +3,7 @@
 mod absorbing_column;
 mod collapse_smoothing;
 mod column_collapse;
+mod contact;
 mod first_mode;
 mod footings;
 mod gravity_column;
@@ -17,7 +18,7 @@ mod thick_cylinder;
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 14] = [
+pub const ALL: [Case; 19] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -87,6 +88,31 @@ pub const ALL: [Case; 14] = [
         name: "collapse-smoothing",
         title: "A collapsing block of sand with each smoothing of strains",
         run: collapse_smoothing::run,
+    },
+    Case {
+        name: "sliding-block",
+        title: "A block that slides down an incline, and one that stays",
+        run: contact::sliding_block::run,
+    },
+    Case {
+        name: "spheres",
+        title: "Two spheres that meet head-on and obliquely",
+        run: contact::spheres::run,
+    },
+    Case {
+        name: "stack",
+        title: "Three blocks that stand on each other",
+        run: contact::stack::run,
+    },
+    Case {
+        name: "drop",
+        title: "A block that falls flat on a floor",
+        run: contact::drop::run,
+    },
+    Case {
+        name: "penetration",
+        title: "A rigid wedge and a rigid cone pushed into soil",
+        run: contact::penetration::run,
     },
 ];
 

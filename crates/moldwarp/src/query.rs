@@ -4,7 +4,7 @@ use crate::Vec3;
 use crate::measure::{Energies, Probes};
 use crate::mesh::Mesh;
 use crate::particles::Particles;
-use crate::plan::Plan;
+use crate::plan::{Contact, Plan};
 use crate::simulation::Simulation;
 use crate::step::Node;
 use crate::tensor::Voigt;
@@ -113,6 +113,22 @@ impl Simulation {
     /// Appends the probes' values, in the order of the columns.
     pub fn probe_values(&self, out: &mut Vec<f64>) {
         self.probes.values(self, out);
+    }
+
+    /// Name and unit of each contact's columns.
+    pub fn contact_columns(&self) -> Vec<(String, &'static str)> {
+        let contacts = self.plan.contacts.iter();
+        contacts.flat_map(Contact::columns).collect()
+    }
+
+    /// Appends what contacts do, in the order of the columns: forces on their first sides, means over
+    /// the last kick.
+    pub fn contact_values(&self, out: &mut Vec<f64>) {
+        for tally in &self.contacts.tallies {
+            out.extend(tally.normal.to_array());
+            out.extend(tally.tangential.to_array());
+            out.extend([tally.sticking, tally.sliding, tally.open].map(f64::from));
+        }
     }
 
     /// Fields over all nodes of the mesh.

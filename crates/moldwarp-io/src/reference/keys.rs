@@ -46,7 +46,7 @@ pub fn words(path: &str) -> Vec<Entry> {
         .split_once("::")
         .unwrap_or_else(|| panic!("`{path}` should be file::Enum"));
     let file = match file {
-        "plan" => "crates/moldwarp/src/plan.rs".to_owned(),
+        plan if plan.split('/').next() == Some("plan") => format!("crates/moldwarp/src/{plan}.rs"),
         _ => format!("crates/moldwarp-io/src/scene/{file}.rs"),
     };
     enum_named(&file, name)

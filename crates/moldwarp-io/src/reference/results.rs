@@ -8,6 +8,7 @@ use moldwarp::NodeFields;
 use moldwarp::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParameters, StateField};
 use moldwarp::measure::Energies;
 use moldwarp::particles::Particles;
+use moldwarp::plan::Contact;
 
 const SUMMARY: &str = "crates/moldwarp-io/src/output/summary.rs";
 
@@ -35,6 +36,7 @@ pub fn table(directive: &[&str]) -> String {
                 .collect();
             markdown(["column", "unit", "meaning"], &rows)
         }
+        ["contact-columns"] => contact_columns(),
         ["energies"] => energies(),
         ["summary"] => summary(),
         ["exit-codes"] => exit_codes(),
@@ -119,6 +121,14 @@ fn state_fields() -> String {
         })
         .collect();
     markdown(["field", "model", "meaning"], &rows)
+}
+
+fn contact_columns() -> String {
+    let column = |(name, unit, meaning): (&str, &str, &str)| {
+        let name = code([format!("contact.<name>.{name}")], "");
+        [name, unit.to_owned(), meaning.to_owned()]
+    };
+    markdown(["column", "unit", "meaning"], &Contact::COLUMNS.map(column))
 }
 
 fn energies() -> String {

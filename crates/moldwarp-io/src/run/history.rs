@@ -57,10 +57,11 @@ pub(crate) const FIRST: [Column; 5] = [
 pub(crate) fn columns(sim: &Simulation) -> Vec<(String, String)> {
     let first = FIRST.map(|c| (c.name.to_owned(), c.unit.to_owned()));
     let probes = sim.probe_columns().into_iter();
+    let probes_and_contacts = probes.chain(sim.contact_columns());
     let energies = Energies::NAMES.map(|name| (format!("energy.{name}"), "J".to_owned()));
     first
         .into_iter()
-        .chain(probes.map(|(name, unit)| (name, unit.to_owned())))
+        .chain(probes_and_contacts.map(|(name, unit)| (name, unit.to_owned())))
         .chain(energies)
         .collect()
 }
@@ -160,6 +161,7 @@ impl History {
         self.row.clear();
         self.row.extend(FIRST.iter().map(|c| (c.value)(sim)));
         whole::probe_values(sim, &mut self.row);
+        whole::contact_values(sim, &mut self.row);
         self.row.extend(whole::energies(sim).values());
         for expected in &mut self.expected {
             expected.seen.push((sim.time(), self.row[expected.column]));

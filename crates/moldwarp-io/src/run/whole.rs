@@ -4,7 +4,7 @@
 //! the history, the summary and the forecast pass through here; frames show the part.
 
 use moldwarp::measure::Energies;
-use moldwarp::plan::Quantity;
+use moldwarp::plan::{Contact, Quantity};
 use moldwarp::{Simulation, Vec3};
 
 /// Masses, volumes and energies of the whole body for one of the part.
@@ -48,5 +48,21 @@ pub(crate) fn probe_values(sim: &Simulation, out: &mut Vec<f64>) {
             _ => {}
         }
         at += values.len();
+    }
+}
+
+/// Appends what contacts do, in the order of the columns: forces are those on the whole body, numbers
+/// of nodes those of the part.
+pub(crate) fn contact_values(sim: &Simulation, out: &mut Vec<f64>) {
+    let at = out.len();
+    sim.contact_values(out);
+    let Some(symmetry) = sim.plan().symmetry else {
+        return;
+    };
+    for values in out[at..].chunks_exact_mut(Contact::COLUMNS.len()) {
+        for force in values[..6].chunks_exact_mut(3) {
+            let whole = symmetry.whole_force(Vec3::from_slice(force));
+            force.copy_from_slice(&whole.to_array());
+        }
     }
 }

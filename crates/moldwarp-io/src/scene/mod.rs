@@ -7,6 +7,7 @@
 mod amount;
 mod bodies;
 mod boundaries;
+mod contacts;
 mod cylinder;
 mod document;
 mod earlier;
@@ -89,6 +90,8 @@ pub(crate) struct Origin {
     bodies: Vec<(String, Range<usize>)>,
     /// The same of probes.
     probes: Vec<(String, Range<usize>)>,
+    /// Names of contacts and where their `surface` stands.
+    surfaces: Vec<(String, Range<usize>)>,
 }
 
 impl Origin {
@@ -106,6 +109,8 @@ impl Origin {
                 self.overlap(first, second)
             }
             (SetupError::Inherited(error), _) => earlier::explain(error),
+            (SetupError::Contact(error), _) => contacts::explain(error, &self.surfaces)
+                .unwrap_or_else(|| Fault::new(error.to_string())),
             (SetupError::NoInitialStress { body, .. }, _) => {
                 Fault::new(error.to_string()).help(format!(
                     "give `{body}` its `k0` and the scene [initial_stress], or the load a pressure"
@@ -265,16 +270,27 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     presence.check_k0(&raw.bodies.0)?;
     let stages = stages::stages(&raw.stages, &named, &presence)?;
     presence.check_loads(&raw.loads, (&loads, &stages))?;
+    let contacts = contacts::contacts(&raw.contacts, &bodies, (&materials, &stages))?;
+    presence.check_contacts(&raw.contacts, &contacts)?;
     notes.extend(presence.notes());
     let raw_bodies = raw.bodies.0.iter().map(|b| &b.1);
     let initial_stress = initial_stress::initial_stress(raw.initial_stress.as_ref(), raw_bodies)?;
-    let compare = output::compare(&raw.compare, &probes, &folder)?;
+    let compare = output::compare(&raw.compare, (&probes, &contacts), &folder)?;
     for (m, material) in materials.iter().enumerate() {
         let later = stages.iter().flat_map(|s| &s.materials).any(|c| c.1 == m);
         if !later && !bodies.iter().any(|b| b.material == m) {
             notes.push(format!("no body is made of material `{}`", material.name));
         }
     }
+    let surfaces = raw
+        .contacts
+        .iter()
+        .zip(&contacts)
+        .filter_map(|(raw, contact)| {
+            let place = values::span(&raw.get_ref().surface)?;
+            Some((contact.name.clone(), place))
+        });
+    let surfaces = surfaces.collect();
     Ok(Scene {
         plan: Plan {
             title: raw.title.clone().unwrap_or_else(|| case.clone()),
@@ -285,7 +301,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             bodies,
             boundaries,
             loads,
-            contacts: Vec::new(),
+            contacts,
             probes,
             initial_stress,
             inherited: Particles::default(),
@@ -309,6 +325,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             probes: (raw.probes.0.iter())
                 .map(|(name, _)| (name.get_ref().clone(), name.span()))
                 .collect(),
+            surfaces,
             ..Origin::default()
         },
     })

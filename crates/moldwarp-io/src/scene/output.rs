@@ -5,10 +5,9 @@ use super::error::Fault;
 use super::quantity::Dimension;
 use super::raw::{RawAmount, RawCompare, RawOutput, Text};
 use super::suggest;
-use super::unsupported;
 use super::values::{at_most_one, count, positive, span};
 use moldwarp::measure::Energies;
-use moldwarp::plan::Probe;
+use moldwarp::plan::{Contact, Probe};
 use std::path::{Path, PathBuf};
 
 /// How often something is written.
@@ -86,10 +85,10 @@ fn every(
 
 pub(super) fn compare(
     raw: &[RawCompare],
-    probes: &[Probe],
+    (probes, contacts): (&[Probe], &[Contact]),
     folder: &Path,
 ) -> Result<Vec<Compare>, Fault> {
-    let columns = columns(probes);
+    let columns = columns(probes, contacts);
     raw.iter()
         .map(|raw| {
             check_column(&raw.column, &columns)?;
@@ -109,13 +108,14 @@ pub(super) fn compare(
         .collect()
 }
 
-fn columns(probes: &[Probe]) -> Vec<String> {
+fn columns(probes: &[Probe], contacts: &[Contact]) -> Vec<String> {
     let mut columns = Vec::new();
     for probe in probes {
         for quantity in &probe.quantities {
             columns.extend(quantity.columns(&probe.name));
         }
     }
+    columns.extend(contacts.iter().flat_map(Contact::columns).map(|c| c.0));
     columns.extend(Energies::NAMES.iter().map(|kind| format!("energy.{kind}")));
     columns
 }
@@ -125,21 +125,11 @@ fn check_column(column: &Text, columns: &[String]) -> Result<(), Fault> {
     if columns.contains(name) {
         return Ok(());
     }
-    let later = name.strip_prefix("energy.");
-    if later.is_some_and(|kind| unsupported::ENERGIES.contains(&kind)) {
-        return Err(Fault::new(format!(
-            "the column `{name}` is not supported yet by this version"
-        ))
-        .at(column.span(), "not supported yet")
-        .help(format!(
-            "energies there are: {}",
-            suggest::list(Energies::NAMES)
-        )));
-    }
     let near = suggest::nearest(name, columns.iter().map(String::as_str));
     let help = match near {
         Some(near) => format!("did you mean `{near}`?"),
-        None => "columns are `<probe>.<quantity>.<component>` and `energy.<kind>`".to_owned(),
+        None => "columns are `<probe>.<quantity>.<component>`, `contact.<name>.<what>` and `energy.<kind>`"
+            .to_owned(),
     };
     Err(Fault::new(format!("the history has no column `{name}`"))
         .at(column.span(), "no such column")

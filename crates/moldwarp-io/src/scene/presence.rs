@@ -2,9 +2,9 @@
 
 use super::amount::{Spanned, each};
 use super::error::Fault;
-use super::raw::{RawBody, RawLoad, RawStage, Text, Texts};
+use super::raw::{RawBody, RawContact, RawLoad, RawStage, Text, Texts};
 use super::values::find;
-use moldwarp::plan::{Body, Item, Load, Stage};
+use moldwarp::plan::{Body, Contact, ContactSurface, Item, Load, Stage};
 use std::ops::Range;
 
 /// A body and where its name stands.
@@ -250,6 +250,46 @@ impl<'a> Presence<'a> {
                 .at(raw.get_ref().surface.span(), "on from the start")
                 .help(on.unwrap_or_default()),
         }
+    }
+
+    /// Contacts are there in all stages: their bodies must not go. Those that come later have no faces
+    /// at the start, from which an aligned contact has its normals.
+    pub fn check_contacts(
+        &self,
+        raw: &[Spanned<RawContact>],
+        contacts: &[Contact],
+    ) -> Result<(), Fault> {
+        for (raw, contact) in raw.iter().zip(contacts) {
+            let raw = raw.get_ref();
+            let sides = raw.bodies.get_ref().iter().zip(&contact.bodies);
+            for (side, (texts, numbers)) in sides.enumerate() {
+                for ((named, name), &body) in each(texts).into_iter().zip(numbers) {
+                    if let Some((by, place)) = self.removed(self.stages.len() - 1, body) {
+                        return Err(Fault::new(format!(
+                            "body `{name}` is removed while contact `{}` names it",
+                            contact.name
+                        ))
+                        .at(named, "in contact through all stages")
+                        .at(place, format!("stage `{}` removes it", self.name(by)))
+                        .help(format!("keep `{name}`, or leave it out of the contact")));
+                    }
+                    let aligned = side == 0 && contact.surface == ContactSurface::Aligned;
+                    if aligned && !self.there[0][body] {
+                        let by = self.comes(0, body).unwrap_or_default();
+                        return Err(Fault::new(format!(
+                            "contact `{}` is aligned, but `{name}` is not there at the start",
+                            contact.name
+                        ))
+                        .at(named, format!("stage `{by}` adds it"))
+                        .help(
+                            "surface = \"free\": an aligned contact has its normals from the faces \
+                             that its first side has at the start",
+                        ));
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 
     /// What the user should know of bodies that come later.

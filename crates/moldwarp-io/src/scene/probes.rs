@@ -7,7 +7,7 @@ use super::quantity::Dimension;
 use super::raw::{RawProbe, Text};
 use super::surfaces::surface;
 use super::unsupported;
-use super::values::{choose, exactly_one, find, placed, span, vector};
+use super::values::{choose, exactly_one, find, fits_a_column, placed, span, vector};
 use moldwarp::Mesh;
 use moldwarp::plan::{Body, Boundary, Probe, Quantity, Target};
 
@@ -43,17 +43,10 @@ pub(super) fn probes(
     Ok(probes)
 }
 
-/// The name becomes the first part of a column's name in a CSV file.
+/// The name becomes the first part of a column's name.
 fn check_name(name: &Text) -> Result<(), Fault> {
+    fits_a_column("probe", name)?;
     let text = name.get_ref();
-    if text.is_empty() || text.contains(['.', ',', '"', '\n', '\r']) {
-        return Err(Fault::new("a probe's name becomes part of a column's name")
-            .at(
-                name.span(),
-                "is empty, or has a dot, comma, quote or line break",
-            )
-            .help("use letters, digits, `-` and `_`"));
-    }
     if RESERVED.contains(&text.as_str()) {
         return Err(Fault::new(format!("a probe cannot be called `{text}`"))
             .at(name.span(), "the history has columns of this name already")

@@ -54,6 +54,11 @@ pub(super) struct RawScene {
     /// default: none
     #[serde(default)]
     pub loads: Vec<Spanned<RawLoad>>,
+    /// [Contacts](#contacts); bodies without one stick together where they meet.
+    /// type: list of tables
+    /// default: none
+    #[serde(default)]
+    pub contacts: Vec<Spanned<RawContact>>,
     /// [Probes](#probes).
     /// type: tables
     /// default: none
@@ -360,6 +365,36 @@ pub(super) struct RawLoad {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub(super) struct RawContact {
+    /// Part of its columns' names in the history, and for `--set`: no dot, comma, quote or line
+    /// break; no two the same.
+    /// type: text
+    /// default: names of the bodies, as in `anchor-clay+sand`
+    pub name: Option<Text>,
+    /// The two sides: each a body, or a list of bodies that hang together.
+    /// type: list of 2, each a name or a list of names
+    pub bodies: Spanned<Vec<Texts>>,
+    /// Coefficient of friction μ.
+    /// type: number ≥ 0
+    /// default: 0
+    pub friction: Option<RawAmount>,
+    /// What may be held along the surface without any pressure; nothing is held along the normal.
+    /// type: stress ≥ 0
+    /// default: 0
+    pub adhesion: Option<RawAmount>,
+    /// Where the sides meet.
+    /// type: words of plan/contact::ContactSurface
+    /// default: "free"
+    pub surface: Option<Text>,
+    /// Whether the sides may approach as long as there is a gap between them; if not, they may not
+    /// from the moment that they share nodes.
+    /// type: true or false
+    /// default: true, but false where a body is of a plastic material in some stage
+    pub gap_check: Option<Spanned<bool>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct RawLinear {
     /// Pressure at the level.
     /// type: stress
@@ -615,7 +650,7 @@ pub(super) struct RawOutput {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawCompare {
-    /// Of the history: `<probe>.<quantity>.<component>` or `energy.<kind>`.
+    /// Of the history: `<probe>.<quantity>.<component>`, `contact.<name>.<what>` or `energy.<kind>`.
     /// type: text
     pub column: Text,
     /// What is expected: CSV with a header row; the first two columns are time (s) and value (SI), times not

@@ -1,8 +1,7 @@
 //! What the scene format has a name for but this version cannot compute.
 
 /// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
-const KEYS: [(&str, &str); 3] = [
-    ("contacts", "gravity"),
+const KEYS: [(&str, &str); 2] = [
     ("particle_spacing", "particles_per_element"),
     ("checkpoint_interval", "frames"),
 ];
@@ -11,8 +10,6 @@ const KEYS: [(&str, &str); 3] = [
 pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];
 /// What probes record.
 pub(super) const QUANTITIES: [&str; 1] = ["penetration"];
-/// Energies in the history.
-pub(super) const ENERGIES: [&str; 2] = ["friction", "contact"];
 
 /// Whether `key` is one of them where `siblings` are the keys that are known.
 pub(super) fn key(key: &str, siblings: &[&str]) -> bool {
@@ -33,14 +30,12 @@ pub(crate) fn later() -> Vec<(String, Vec<&'static str>)> {
     }
     all.push(("boundaries".to_owned(), BOUNDARIES.to_vec()));
     all.push(("quantities".to_owned(), QUANTITIES.to_vec()));
-    all.push(("energies".to_owned(), ENERGIES.to_vec()));
     all
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use moldwarp::measure::Energies;
     use moldwarp::plan::Quantity;
 
     /// What is supported by now must not be called unsupported.
@@ -52,7 +47,6 @@ mod tests {
             assert_eq!(both, None, "a key that there is");
         }
         assert!(Quantity::ALL.iter().all(|q| !QUANTITIES.contains(&q.0)));
-        assert!(Energies::NAMES.iter().all(|name| !ENERGIES.contains(name)));
         let kinds = crate::reference::words("boundaries::Kind");
         assert!(
             kinds

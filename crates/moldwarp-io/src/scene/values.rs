@@ -135,6 +135,22 @@ pub(super) fn choose<T: Copy>(
         .help(suggest::help(word, "what there is", words)))
 }
 
+/// Refuses a name that cannot be part of a column's name in a CSV file.
+pub(super) fn fits_a_column(what: &str, name: &Text) -> Result<(), Fault> {
+    let text = name.get_ref();
+    if text.is_empty() || text.contains(['.', ',', '"', '\n', '\r']) {
+        return Err(
+            Fault::new(format!("a {what}'s name becomes part of a column's name"))
+                .at(
+                    name.span(),
+                    "is empty, or has a dot, comma, quote or line break",
+                )
+                .help("use letters, digits, `-` and `_`"),
+        );
+    }
+    Ok(())
+}
+
 /// The text with its place.
 pub(super) fn placed(text: &Text) -> (Range<usize>, &str) {
     (text.span(), text.get_ref())

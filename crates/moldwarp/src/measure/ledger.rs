@@ -76,14 +76,14 @@ pub struct Energies {
     pub prescribed: f64,
     /// Σ σ : Δε^p V, dissipated by plastic flow.
     pub plastic: f64,
-    /// Dissipated by local damping, viscosity and the relaxation to the mesh's velocities.
-    pub damping: f64,
-    /// Taken by absorbing boundaries: dissipated in dashpots, stored in springs.
-    pub absorbed: f64,
     /// Dissipated by friction between bodies.
     pub friction: f64,
     /// Taken by impulses along the normals of contacts.
     pub contact: f64,
+    /// Dissipated by local damping, viscosity and the relaxation to the mesh's velocities.
+    pub damping: f64,
+    /// Taken by absorbing boundaries: dissipated in dashpots, stored in springs.
+    pub absorbed: f64,
     /// Σ ½ m_p v_p² of particles that stages have taken away; those added come at rest. All other kinds
     /// are works, so what a removed body has stored stays in `elastic` and `gravity`.
     pub removed: f64,

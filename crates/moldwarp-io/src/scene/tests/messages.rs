@@ -38,9 +38,9 @@ fn shape() {
             "until = \"equilibrium\"",
         ),
         case(
-            "table for later",
-            "[output]",
-            "[[contacts]]\nfriction = 1\n[output]",
+            "another key for later",
+            "particles_per_element = 4",
+            "particle_spacing = \"5 cm\"",
         ),
         case(
             "gravity missing",

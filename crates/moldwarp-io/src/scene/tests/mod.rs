@@ -1,5 +1,6 @@
 //! Scenes that are right give the expected plan; scenes that are wrong say where and why.
 
+mod contacts;
 mod messages;
 mod plans;
 mod presence;

@@ -129,7 +129,7 @@ fn bodies_that_are_not_there() {
 }
 
 /// What the solver finds when it sets up the scene.
-fn setup(title: &str, text: &str) -> String {
+pub(super) fn setup(title: &str, text: &str) -> String {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("scene.toml");
     std::fs::write(&file, text).unwrap();

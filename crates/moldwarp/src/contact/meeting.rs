@@ -164,7 +164,10 @@ impl Meeting {
     }
 
     /// Corrects the velocities that move the nodes, in the state of the kick: what has stuck moves
-    /// together, what slides does not approach, what is open is left alone.
+    /// together, what slides does so along the normals, what is open is left alone. What was pressed
+    /// together in the kick does not part in the drift that follows either: were only approach stopped,
+    /// forces would do work on every accidental departure and take none back, and bodies that rest on
+    /// each other would shake more and more.
     fn move_together(&self, a: &mut Mass, b: &mut Mass, free: &Mat3) {
         if self.state == State::Open {
             return;
@@ -180,9 +183,10 @@ impl Meeting {
             give(*free * relative);
             return;
         }
-        for k in 0..self.count {
-            let beyond = relative.dot(self.normals[k]) - self.allowed[k];
-            relative = give(self.normals[k] * beyond.max(0.0));
+        for k in (0..self.count).filter(|&k| self.normal[k] > 0.0) {
+            let approach = relative.dot(self.normals[k]);
+            let beyond = approach - approach.clamp(0.0, self.allowed[k]);
+            relative = give(self.normals[k] * beyond);
         }
         if self.state == State::Sticking {
             give(self.tangent(*free * relative));

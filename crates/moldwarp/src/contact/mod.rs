@@ -88,6 +88,8 @@ pub struct Contacts {
     meets: Vec<bool>,
     pub tallies: Vec<Tally>,
     pub rigid: Vec<Rigid>,
+    /// The same before a trial, kept so that no step allocates.
+    pub rigid_before: Vec<Rigid>,
     /// Index into `rigid` of each field.
     pub rigid_of_field: Vec<Option<usize>>,
     /// Masses of the fields at the node that is worked on.
@@ -246,8 +248,8 @@ impl Contacts {
     }
 
     /// Normals of the faces of an aligned structure at a node, out of it, and the part of their area
-    /// that belongs to the node and has material of another body behind it, m². Faces that differ by
-    /// less than 20° are one.
+    /// that belongs to the node and has material of another body behind it, m². Only such faces count,
+    /// unless there is none; those that differ by less than 20° are one.
     pub fn face_normals(
         &self,
         mesh: &Mesh,
@@ -257,9 +259,12 @@ impl Contacts {
     ) -> ([Vec3; NORMALS], usize, f64) {
         let mut sums = [Vec3::ZERO; NORMALS];
         let (mut count, mut area) = (0, 0.0);
-        for face in depth::at(&self.faces[contact as usize], node) {
+        let faces = || depth::at(&self.faces[contact as usize], node);
+        let behind = |face: Face| mesh.across(face).is_some_and(|f| touched(f.element));
+        let any = faces().any(behind);
+        for face in faces().filter(|&f| !any || behind(f)) {
             let own = mesh.face_area(face);
-            if mesh.across(face).is_some_and(|f| touched(f.element)) {
+            if any {
                 area += own.length() / 3.0;
             }
             let alike = |sum: &Vec3| sum.normalize().dot(own.normalize()) > SMOOTH_COSINE;

@@ -1,6 +1,7 @@
 //! Contact between bodies: after the equation of motion, and again after the remap (Jassim et al.
 //! Eq. 10–14; the impulses are in `contact/meeting.rs`).
 
+use super::nodes::signs;
 use super::{Active, Node};
 use crate::boundary::Constraints;
 use crate::contact::{
@@ -28,6 +29,10 @@ pub(super) fn kick(sim: &mut Simulation, before: f64, after: f64) {
     }
     let mut contacts = std::mem::take(&mut sim.contacts);
     look(sim, &mut contacts, 2.0 * before.max(after));
+    let damping = sim.local_damping();
+    if damping > 0.0 {
+        damp(sim, &mut contacts, damping, before + after);
+    }
     push(sim, &mut contacts, before + after);
     contacts.take_stock(&sim.active);
     sim.contacts = contacts;
@@ -47,6 +52,46 @@ fn look(sim: &Simulation, contacts: &mut Contacts, drift: f64) {
         }
     });
     contacts.meetings = meetings;
+}
+
+/// Local damping at nodes where bodies meet, anew: it has been found without the forces of contact, but
+/// what these balance is not to be damped.
+fn damp(sim: &mut Simulation, contacts: &mut Contacts, damping: f64, h: f64) {
+    let change = |sim: &mut Simulation, contacts: &Contacts, sign: f64| {
+        for (slot, node) in sim.nodes.iter_mut().enumerate() {
+            if contacts.meets(slot) {
+                node.acceleration += node.damping * (sign / node.mass);
+            }
+        }
+    };
+    change(sim, contacts, -1.0);
+    // Fields have few rigid bodies: their velocities before the trial, to go back to.
+    let mut rigid = std::mem::take(&mut contacts.rigid_before);
+    rigid.clear();
+    rigid.extend_from_slice(&contacts.rigid);
+    push(sim, contacts, h);
+    for (slot, node) in sim.nodes.iter_mut().enumerate() {
+        let field = sim.active.field(slot);
+        if contacts.meets(slot) && contacts.rigid_of_field[field].is_none() {
+            let constraint = sim.constraints.of(sim.active.nodes[slot]);
+            let free = constraint.map_or(Mat3::IDENTITY, |c| c.free);
+            let driving = free * node.acceleration * node.mass;
+            node.damping = free * (-damping * driving.abs() * signs(node.velocity));
+        }
+    }
+    for meeting in &contacts.meetings {
+        let force = meeting.normal_force + meeting.friction;
+        let [a, b] = meeting.slots.map(|s| s as usize);
+        let masses = [sim.nodes[a].mass, sim.nodes[b].mass];
+        sim.nodes[a].acceleration += force / masses[0];
+        sim.nodes[b].acceleration -= force / masses[1];
+    }
+    contacts.rigid.copy_from_slice(&rigid);
+    contacts.rigid_before = rigid;
+    for body in &contacts.rigid {
+        super::rigid::spread(body, &sim.active, &mut sim.nodes, h);
+    }
+    change(sim, contacts, 1.0);
 }
 
 /// The impulses of a kick of length `h`.

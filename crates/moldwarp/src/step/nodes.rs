@@ -156,7 +156,7 @@ fn apply_loads(sim: &mut Simulation) {
 }
 
 /// −1, 0 or 1 per component.
-fn signs(v: Vec3) -> Vec3 {
+pub(super) fn signs(v: Vec3) -> Vec3 {
     v.to_array()
         .map(|x| if x == 0.0 { 0.0 } else { x.signum() })
         .into()

@@ -2,7 +2,7 @@
 """The figures of this example from the results of its runs.
 
     pip install numpy matplotlib pyvista
-    python3 figures.py out/tunnel-face-fine out/tunnel-face --label "0.6 m" "1.5 m" --to .
+    python3 figures.py out/tunnel-face-fine out/tunnel-face --label "0.6 m" "1.2 m" --to .
 
 Prints collapse times, craters and the volume of soil in the bore of every run; draws kinetic
 energy and craters of all runs, and the section at the end and a film strip of the first.
@@ -179,7 +179,7 @@ def draw_section(folder, path):
 
 
 def draw_film(folder, path):
-    """Times are those of the frames: the support goes 0.1 s after the start."""
+    """Times are those of the frames: the support goes within 0.1 s of the start."""
     figure, axes = plt.subplots(3, 2, figsize=(9, 7.2))
     for place, time in zip(axes.flat, (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)):
         *state, shown = particles(folder, time)

@@ -231,7 +231,7 @@ fn the_tunnel_face_is_computed() {
         .concat(),
     );
     let summary = bench.summary("out/mine");
-    assert_eq!(summary["particles"].as_u64(), Some(29836));
+    assert_eq!(summary["particles"].as_u64(), Some(39120));
     let history = csv::read(&bench.path("out/mine/history.csv")).unwrap();
     let stage = history.column("stage").unwrap();
     let volume = history.column("bore.volume").unwrap();

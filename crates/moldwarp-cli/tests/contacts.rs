@@ -40,13 +40,11 @@ name = "sole"
 bodies = ["block", "floor"]
 friction = 0.3
 
-[numerics]
-viscosity = "3 ms"
-
 [[stages]]
 name = "rest"
 until = "equilibrium"
 duration = "20 s"
+damping = 0.7
 equilibrium = { unbalanced = 1e-4, kinetic = 1e-6 }
 
 [output]

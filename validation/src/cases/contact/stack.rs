@@ -3,9 +3,6 @@
 //! In plane strain, free at their sides. Gravity is there from the start; the stack comes to rest
 //! under viscosity or under local damping, and then, without local damping, must stay. The bottom
 //! carries the weight.
-//!
-//! Local damping has no limits here: at nodes where bodies meet it is made of forces without those of
-//! the contact, so that it does not vanish at rest and keeps the blocks jumping.
 
 use super::{body, contact, mean};
 use crate::setup;
@@ -165,10 +162,7 @@ pub fn run(fidelity: Fidelity) -> Report {
                 &format!("{:.3}", 100.0 * balance.numerical),
                 &format!("{:.1e}", balance.residual),
             ]);
-            if rest == Rest::LocalDamping {
-                continue;
-            }
-            let label = format!("{name}; h = {h} m");
+            let label = format!("{name}; {by}; h = {h} m");
             let mut check = |what: &str, value: f64, limit: f64| {
                 report.check(format!("{label}: {what}"), value, limit);
             };

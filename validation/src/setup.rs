@@ -54,7 +54,7 @@ pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
         materials: vec![material],
         bodies: vec![Body {
             name: "body".to_owned(),
-            place: Place::VolumeGroup(0),
+            place: Place::Volumes(vec![0]),
             material: 0,
             seeding: Seeding::Four,
         }],
@@ -64,6 +64,7 @@ pub fn free_body(mesh: Mesh, material: NamedMaterial, end: f64) -> Plan {
         probes: Vec::new(),
         initial_stress: None,
         inherited: Default::default(),
+        mesh_motion: None,
         numerics: Numerics::default(),
         stages: vec![Stage::new("run", Until::Duration(end))],
     }

@@ -12,7 +12,8 @@ pub enum Exit {
     /// Wrong input or arguments; no output was written.
     Input = 2,
     /// A guard stopped the run: a particle left the mesh, an element turned over, a body was to be
-    /// added where another one is, a particle passed a face of a contact, there is no stable step, or
+    /// added where another one is, a particle passed a face of a contact, a moving mesh was
+    /// compressed to degeneracy, there is no stable step, or
     /// the forced one is above it. What was computed is kept, with a last frame and row.
     Guard = 3,
     /// Reading or writing failed during the run.
@@ -29,6 +30,8 @@ pub fn of_stop(stop: &Stop) -> Exit {
         Stop::LeftTheMesh { .. }
         | Stop::PassedAFace { .. }
         | Stop::TurnedOver { .. }
+        | Stop::Degenerate { .. }
+        | Stop::Motion { .. }
         | Stop::NoRoom { .. }
         | Stop::TimeStep { .. } => Exit::Guard,
     }

@@ -1,9 +1,11 @@
 //! What is to be computed: checked, in SI units, every name resolved to a number.
 
 mod contact;
+mod mesh_motion;
 mod stage;
 
 pub use contact::{Contact, ContactSurface};
+pub use mesh_motion::MeshMotion;
 pub use stage::{Equilibrium, Item, Level, Ramp, Stage, Until};
 
 use crate::Vec3;
@@ -20,6 +22,8 @@ pub struct Plan {
     /// m/s².
     pub gravity: Vec3,
     pub mesh: Mesh,
+    /// How the mesh moves with a body, if it does.
+    pub mesh_motion: Option<MeshMotion>,
     /// What the mesh is of the whole body, if it is a part of it.
     pub symmetry: Option<Symmetry>,
     pub materials: Vec<NamedMaterial>,
@@ -58,8 +62,8 @@ pub struct Body {
 /// Where a body's particles are at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// In all elements of a volume group (index into [`Mesh::volume_groups`]).
-    VolumeGroup(usize),
+    /// In all elements of volume groups (indices into [`Mesh::volume_groups`]).
+    Volumes(Vec<usize>),
     /// At the seeding points of any element that lie in this region.
     Region(Region),
 }
@@ -116,11 +120,42 @@ impl Region {
 }
 
 /// Particles seeded in each element, all with the same share of its volume.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Seeding {
     One,
     Four,
     Ten,
+    /// As many as it takes, at least four.
+    Spacing(Spacing),
+}
+
+/// Distance between particles, graded in space: a function of the distance from a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spacing {
+    /// Ends of the line, m; the same if it is a point.
+    pub start: Vec3,
+    pub end: Vec3,
+    /// Distance from the line and spacing, m, distances increasing; linear between, constant beyond.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl Spacing {
+    /// At a point, m.
+    pub fn at(&self, x: Vec3) -> f64 {
+        let axis = self.end - self.start;
+        let along = ((x - self.start).dot(axis) / axis.length_squared().max(f64::MIN_POSITIVE))
+            .clamp(0.0, 1.0);
+        let distance = (x - self.start - along * axis).length();
+        let next = self.points.partition_point(|p| p[0] <= distance);
+        match (next.checked_sub(1), self.points.get(next)) {
+            (Some(i), Some(b)) => {
+                let a = self.points[i];
+                a[1] + (b[1] - a[1]) * (distance - a[0]) / (b[0] - a[0])
+            }
+            (Some(i), None) => self.points[i][1],
+            (None, first) => first.map_or(f64::INFINITY, |p| p[1]),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -217,6 +252,10 @@ pub enum Quantity {
     Stress,
     /// Force of the boundaries on the material; of surfaces with a boundary only.
     Reaction,
+    /// Displacement along gravity.
+    Penetration,
+    /// Force of an aligned contact on its first side, of the faces of a surface of that body.
+    Contact,
     /// Volume of the material in a part of the mesh, or of a body, without what has opened in
     /// tension.
     Volume,
@@ -224,13 +263,15 @@ pub enum Quantity {
 
 impl Quantity {
     /// Every quantity with its name in a scene.
-    pub const ALL: [(&'static str, Quantity); 7] = [
+    pub const ALL: [(&'static str, Quantity); 9] = [
         ("displacement", Quantity::Displacement),
         ("velocity", Quantity::Velocity),
         ("acceleration", Quantity::Acceleration),
         ("position", Quantity::Position),
         ("stress", Quantity::Stress),
         ("reaction", Quantity::Reaction),
+        ("penetration", Quantity::Penetration),
+        ("contact", Quantity::Contact),
         ("volume", Quantity::Volume),
     ];
 
@@ -246,7 +287,7 @@ impl Quantity {
     /// The names of its components; one without a name if it is a number.
     pub fn components(self) -> &'static [&'static str] {
         match self {
-            Quantity::Volume => &[""],
+            Quantity::Volume | Quantity::Penetration => &[""],
             Quantity::Stress => &["xx", "yy", "zz", "xy", "yz", "zx"],
             _ => &["x", "y", "z"],
         }
@@ -264,11 +305,11 @@ impl Quantity {
     /// Its unit.
     pub fn unit(self) -> &'static str {
         match self {
-            Quantity::Displacement | Quantity::Position => "m",
+            Quantity::Displacement | Quantity::Position | Quantity::Penetration => "m",
             Quantity::Velocity => "m/s",
             Quantity::Acceleration => "m/s2",
             Quantity::Stress => "Pa",
-            Quantity::Reaction => "N",
+            Quantity::Reaction | Quantity::Contact => "N",
             Quantity::Volume => "m3",
         }
     }

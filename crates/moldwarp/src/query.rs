@@ -131,6 +131,25 @@ impl Simulation {
         }
     }
 
+    /// Force of aligned contacts on their first sides at nodes of the mesh, ascending, each with the
+    /// part of it that counts, N.
+    pub(crate) fn contact_force(&self, shares: &[(u32, f64)]) -> Vec3 {
+        let mut force = Vec3::ZERO;
+        for meeting in &self.contacts.meetings {
+            let (Some(number), slot) = (meeting.contact, meeting.slots[0] as usize) else {
+                continue;
+            };
+            let node = self.active.nodes[slot];
+            if let Ok(at) = shares.binary_search_by_key(&node, |s| s.0) {
+                // Forces are those on b.
+                let first = self.contacts.is_first(number, self.active.field(slot));
+                let sign = if first { -1.0 } else { 1.0 };
+                force += (meeting.normal_force + meeting.friction) * (sign * shares[at].1);
+            }
+        }
+        force
+    }
+
     /// Fields over all nodes of the mesh.
     pub fn node_fields(&self) -> NodeFields {
         let count = self.plan.mesh.nodes.len();

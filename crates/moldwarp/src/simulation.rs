@@ -7,12 +7,12 @@ use crate::boundary::{
 };
 use crate::contact::{ContactError, Contacts, Fields, is_rigid};
 use crate::measure::{Ledger, Probes, Scale, Watch};
-use crate::mesh::{Follower, Walls};
+use crate::mesh::{Driven, Follower, MotionError, Walls};
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{InheritedError, InitialStressError, Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{Active, CellForce, CellStrain, CellSums, Grid, Node, TimeStepError};
+use crate::step::{Active, CellForce, CellStrain, CellSums, Grid, Node, Reference, TimeStepError};
 use crate::switches::Switches;
 
 /// Why a plan cannot be computed.
@@ -28,8 +28,12 @@ pub enum SetupError {
     Load(#[from] LoadError),
     #[error(transparent)]
     TimeStep(#[from] TimeStepError),
+    #[error(transparent)]
+    Motion(#[from] MotionError),
     #[error("probe `{probe}` asks for a reaction, but is no surface that carries a boundary")]
     NoReaction { probe: String },
+    #[error("probe `{probe}` asks for the force of a contact, but is no surface of an aligned one")]
+    NoContact { probe: String },
     #[error(transparent)]
     InitialStress(#[from] InitialStressError),
     #[error("load `{load}` asks for the initial stress of body `{body}`, which has none")]
@@ -86,6 +90,23 @@ pub enum Stop {
     )]
     TurnedOver {
         element: u32,
+        stage: String,
+        time: f64,
+    },
+    #[error(
+        "volume `{zone}` is compressed to degeneracy by the moving mesh, first in element {element} \
+         (counted from 0), {time:e} s after the start in stage `{stage}`: give it more room in the \
+         direction of the motion or larger elements, or end the stage earlier"
+    )]
+    Degenerate {
+        zone: String,
+        element: u32,
+        stage: String,
+        time: f64,
+    },
+    #[error("stage `{stage}`, {time:e} s after the start: {error}")]
+    Motion {
+        error: MotionError,
         stage: String,
         time: f64,
     },
@@ -164,9 +185,12 @@ pub struct Simulation {
     pub(crate) constraints: Constraints,
     pub(crate) absorbing: Absorbing,
     pub(crate) follower: Follower,
+    pub(crate) driven: Driven,
     pub(crate) loads: Vec<LoadPoint>,
     /// λ, G and E_c of each body, Pa.
     pub(crate) elasticity: Vec<[f64; 3]>,
+    /// Where a mesh moves through ground with an initial stress.
+    pub(crate) reference: Option<Reference>,
     pub(crate) ledger: Ledger,
     pub(crate) probes: Probes,
     pub(crate) clock: Clock,
@@ -192,8 +216,11 @@ impl Simulation {
         let fields = Fields::new(plan.bodies.len(), &plan.contacts, |b| is_rigid(&plan, b));
         order.sort(&mut particles, plan.mesh.tets.len(), &fields);
         let contacts = Contacts::new(&plan, &fields, &particles, &order.offsets)?;
-        let loads = ground(&plan, &mut particles, &order.offsets)?;
-        let probes = Probes::new(&plan, &particles, &order.offsets);
+        let (loads, ground) = ground(&plan, &mut particles, &order.offsets)?;
+        let reference = reference(&plan, ground);
+        let mut probes = Probes::new(&plan, &particles, &order.offsets);
+        let found = probes.find_contacts(&plan, &contacts);
+        found.map_err(|probe| SetupError::NoContact { probe })?;
         let elasticity = plan
             .bodies
             .iter()
@@ -215,8 +242,10 @@ impl Simulation {
             constraints: Constraints::default(),
             absorbing: Absorbing::default(),
             follower: Follower::default(),
+            driven: Driven::default(),
             loads,
             elasticity,
+            reference,
             ledger: Ledger::default(),
             probes,
             clock: Clock::default(),
@@ -230,6 +259,7 @@ impl Simulation {
         simulation.activate();
         simulation.begin_stage().map_err(|stop| match stop {
             Stop::TimeStep { error, .. } => SetupError::TimeStep(error),
+            Stop::Motion { error, .. } => SetupError::Motion(error),
             Stop::NoRoom {
                 body: second,
                 other: first,
@@ -243,6 +273,7 @@ impl Simulation {
             Stop::LeftTheMesh { .. }
             | Stop::PassedAFace { .. }
             | Stop::TurnedOver { .. }
+            | Stop::Degenerate { .. }
             | Stop::NotAtRest { .. } => {
                 unreachable!("nothing has moved yet")
             }
@@ -360,6 +391,17 @@ impl Simulation {
         }
     }
 
+    pub(crate) fn degenerate(&self, element: u32) -> Stop {
+        let mut groups = self.plan.mesh.volume_groups.iter();
+        let zone = groups.find(|g| g.elements.contains(&element));
+        Stop::Degenerate {
+            zone: zone.map_or(String::new(), |g| g.name.clone()),
+            element,
+            stage: self.plan.stages[self.clock.stage].name.clone(),
+            time: self.clock.time,
+        }
+    }
+
     pub(crate) fn passed_a_face(&self, particle: usize) -> Stop {
         match self.left_the_mesh(particle) {
             Stop::LeftTheMesh {
@@ -392,12 +434,12 @@ impl Simulation {
     }
 }
 
-/// The initial stress of all particles, and the points of the loads.
+/// The initial stress of all particles, the points of the loads, and the ground.
 fn ground(
     plan: &Plan,
     particles: &mut Particles,
     offsets: &[u32],
-) -> Result<Vec<LoadPoint>, SetupError> {
+) -> Result<(Vec<LoadPoint>, Option<Ground>), SetupError> {
     let ground = plan.initial_stress.as_ref().map(|setting| {
         let switched = (&plan.boundaries, &plan.loads);
         let surfaces = switched.0.iter().map(|b| &b.surfaces);
@@ -436,13 +478,26 @@ fn ground(
             _ => [0.0; 6],
         },
     };
-    Ok(load_points(
+    let points = load_points(
         &plan.mesh,
         (plan.loads.iter().enumerate()).filter(|l| plan.there_at_the_start(l.1.body)),
         particles,
         offsets,
         &surroundings,
-    )?)
+    )?;
+    Ok((points, ground.map(|g| g.0)))
+}
+
+/// A mesh that moves needs a reference stress. Where it stays, particles are where their stresses
+/// balance to begin with, and flow takes them to where the initial stress means nothing.
+fn reference(plan: &Plan, ground: Option<Ground>) -> Option<Reference> {
+    let setting = plan.initial_stress.as_ref()?;
+    plan.mesh_motion.as_ref()?;
+    Some(Reference {
+        ground: ground?,
+        k0: setting.k0.clone(),
+        gravity: plan.gravity,
+    })
 }
 
 fn check_reactions(plan: &Plan) -> Result<(), SetupError> {

@@ -1,9 +1,9 @@
 //! How stages begin and end.
 
-use crate::boundary::{Absorbing, Constraints};
+use crate::boundary::{Absorbing, Constraints, surface_nodes};
 use crate::material::Material;
 use crate::measure::Watch;
-use crate::mesh::{Face, Follower, Mesh, Walls};
+use crate::mesh::{Driven, Face, Follower, Mesh, MotionError, Walls, Zones};
 use crate::plan::{Boundary, BoundaryKind, Plan, Until};
 use crate::simulation::{Simulation, Stop};
 use crate::{Mat3, Vec3};
@@ -33,7 +33,11 @@ impl Simulation {
         let switched = switched || other_bodies;
         self.clock.new_constraints = switched && !first;
         if switched || first {
-            self.set_boundaries(first);
+            self.set_boundaries(first).map_err(|error| Stop::Motion {
+                error,
+                stage: self.plan.stages[self.clock.stage].name.clone(),
+                time: self.clock.time,
+            })?;
         }
         if reset {
             self.particles.displacement.fill(Vec3::ZERO);
@@ -72,7 +76,7 @@ impl Simulation {
 
     /// Sets up the boundaries that are on. An absorbing one begins in equilibrium: with the reaction
     /// that has held its nodes, at the start of a run with that of the initial or inherited stress.
-    fn set_boundaries(&mut self, first: bool) {
+    fn set_boundaries(&mut self, first: bool) -> Result<(), MotionError> {
         let boundaries: Vec<&Boundary> = (self.plan.boundaries.iter())
             .zip(&self.switches.boundaries)
             .filter(|b| *b.1)
@@ -81,7 +85,9 @@ impl Simulation {
         let constraints = Constraints::new(&self.plan.mesh, &boundaries);
         let free = |n: u32| constraints.of(n).map_or(Mat3::IDENTITY, |c| c.free);
         let mut absorbing = absorbing(self, &boundaries);
-        self.follower = follower(&self.plan, &boundaries, free);
+        let driven = driven(self, &boundaries, free)?;
+        self.follower = follower(&self.plan, &boundaries, free, |n| driven.in_zone(n));
+        self.driven = driven;
         let walls = walls(&self.plan.mesh, &boundaries);
         let before = std::mem::take(&mut self.absorbing);
         let stressed = self.plan.initial_stress.is_some() || !self.plan.inherited.is_empty();
@@ -96,6 +102,7 @@ impl Simulation {
         self.absorbing = absorbing;
         self.walls = walls;
         self.activate();
+        Ok(())
     }
 
     /// Time left in the stage, s; infinite if it is limited by steps that are not yet done.
@@ -186,12 +193,79 @@ fn absorbing(sim: &Simulation, boundaries: &[&Boundary]) -> Absorbing {
     })
 }
 
-fn follower(plan: &Plan, boundaries: &[&Boundary], free: impl Fn(u32) -> Mat3 + Sync) -> Follower {
-    let is_absorbing = |kind: &BoundaryKind| matches!(kind, BoundaryKind::Absorbing { .. });
-    let surfaces: Vec<&[Face]> = boundaries
-        .iter()
-        .filter(|b| is_absorbing(&b.kind))
-        .flat_map(|b| b.surfaces.iter().map(|&s| &plan.mesh.surfaces[s].faces[..]))
+fn is_absorbing(boundary: &Boundary) -> bool {
+    matches!(boundary.kind, BoundaryKind::Absorbing { .. })
+}
+
+fn follower(
+    plan: &Plan,
+    boundaries: &[&Boundary],
+    free: impl Fn(u32) -> Mat3 + Sync,
+    driven: impl Fn(u32) -> bool + Sync,
+) -> Follower {
+    let absorbing = boundaries.iter().filter(|b| is_absorbing(b));
+    let surfaces = absorbing.flat_map(|b| &b.surfaces);
+    let surfaces: Vec<&[Face]> = surfaces
+        .map(|&s| &plan.mesh.surfaces[s].faces[..])
         .collect();
-    Follower::new(&plan.mesh, &surfaces, free)
+    Follower::new(&plan.mesh, &surfaces, free, driven)
+}
+
+/// The mesh's motion with its driver. It stays on absorbing boundaries: their rest and displacement
+/// belong to the material, which must not be dragged away from under them.
+fn driven(
+    sim: &Simulation,
+    boundaries: &[&Boundary],
+    free: impl Fn(u32) -> Mat3,
+) -> Result<Driven, MotionError> {
+    let (plan, mesh) = (&sim.plan, &sim.plan.mesh);
+    let Some(motion) = &plan.mesh_motion else {
+        return Ok(Driven::default());
+    };
+    let mut driver = vec![false; mesh.tets.len()];
+    for (e, own) in driver.iter_mut().enumerate() {
+        let inside = sim.particles_in(e as u32);
+        let is_own = |&p: &usize| usize::from(sim.particles.body[p]) == motion.driver;
+        let volume: f64 = inside.filter(is_own).map(|p| sim.particles.volume[p]).sum();
+        *own = volume > 0.0;
+        if *own && sim.clock.steps == 0 && (volume / mesh.volumes[e] - 1.0).abs() > 1e-9 {
+            return Err(MotionError::NotOnFaces {
+                driver: plan.bodies[motion.driver].name.clone(),
+                element: e as u32,
+            });
+        }
+    }
+    let zones = Zones {
+        driver: &driver,
+        moving: &motion.moving,
+        blend: &motion.blend,
+    };
+    let mut stays = vec![false; mesh.nodes.len()];
+    for boundary in boundaries.iter().filter(|b| is_absorbing(b)) {
+        surface_nodes(mesh, &boundary.surfaces)
+            .into_iter()
+            .for_each(|n| stays[n as usize] = true);
+    }
+    let holder = |n: u32| {
+        let touches = |b: &&&Boundary| surface_nodes(mesh, &b.surfaces).contains(&n);
+        let held = |b: &Boundary| {
+            let alone = Constraints::new(mesh, &[b]);
+            is_absorbing(b)
+                || (alone
+                    .of(n)
+                    .is_some_and(|c| (c.free * motion.direction).length() < 0.9))
+        };
+        let mut touching = boundaries.iter().filter(touches);
+        let first = touching.clone().next();
+        let holding = touching.find(|b| held(b)).or(first);
+        holding.map_or(String::new(), |b| b.name.clone())
+    };
+    Driven::new(
+        mesh,
+        zones,
+        motion.direction,
+        free,
+        |n| stays[n as usize],
+        holder,
+    )
 }

@@ -78,6 +78,7 @@ fn ground(bottom: BoundaryKind, change: impl Fn(&mut Stage)) -> Plan {
         loads: vec![],
         contacts: vec![],
         inherited: Default::default(),
+        mesh_motion: None,
         probes: vec![Probe {
             name: "bottom".into(),
             target: Target::Surface(mesh.surface("z-min").unwrap()),

@@ -87,6 +87,7 @@ fn incline(h: f64, contact: Contact) -> Plan {
         }],
         initial_stress: None,
         inherited: Default::default(),
+        mesh_motion: None,
         numerics: Numerics {
             // 5 % of critical on the block's first mode, ω = 2π c_p/(4 H).
             viscosity: 5.4e-4,

@@ -61,6 +61,7 @@ fn column(bottom: BoundaryKind, cells: usize, stages: Vec<Stage>) -> Plan {
         probes: vec![],
         initial_stress: None,
         inherited: Particles::default(),
+        mesh_motion: None,
         numerics: Numerics::default(),
         stages,
         mesh,

@@ -38,7 +38,7 @@ fn plan(split: Split, mass: MassMatrix) -> Plan {
         }],
         bodies: vec![Body {
             name: "body".into(),
-            place: Place::VolumeGroup(0),
+            place: Place::Volumes(vec![0]),
             material: 0,
             seeding: Seeding::Four,
         }],
@@ -52,6 +52,7 @@ fn plan(split: Split, mass: MassMatrix) -> Plan {
         probes: vec![],
         initial_stress: None,
         inherited: Default::default(),
+        mesh_motion: None,
         numerics: Numerics {
             mass,
             ..Numerics::default()

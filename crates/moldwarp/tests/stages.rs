@@ -68,6 +68,7 @@ fn ground(bottom: BoundaryKind) -> Plan {
             surcharge: 0.0,
         }),
         inherited: Default::default(),
+        mesh_motion: None,
         numerics: Numerics::default(),
         stages: vec![Stage::new("rest", Until::Steps(1000))],
         mesh,

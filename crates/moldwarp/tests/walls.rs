@@ -71,6 +71,7 @@ fn halves(below: bool) -> Plan {
         }],
         initial_stress: None,
         inherited: Default::default(),
+        mesh_motion: None,
         numerics: Numerics::default(),
         stages: vec![Stage::new("run", Until::Steps(50))],
         mesh,

@@ -66,6 +66,7 @@ pub fn scene_hash(plan: &Plan) -> String {
         title: _,
         gravity,
         mesh,
+        mesh_motion,
         symmetry,
         materials,
         bodies,
@@ -90,6 +91,9 @@ pub fn scene_hash(plan: &Plan) -> String {
     }
     // Debug prints every f64 so that it reads back the same: no digit is lost.
     h.text("gravity", &format!("{gravity:?}"));
+    if let Some(motion) = mesh_motion {
+        h.text("mesh_motion", &format!("{motion:?}"));
+    }
     h.text("symmetry", &format!("{symmetry:?}"));
     h.text("materials", &format!("{materials:?}"));
     h.text("bodies", &format!("{bodies:?}"));

@@ -48,6 +48,8 @@ impl Folder {
             .replace("\"bottom\"", "\"z-min\"")
             .replace("\"top\"", "\"z-max\"");
         std::fs::write(dir.path().join("model.msh"), mesh).unwrap();
+        let anchor = source::read("examples/drop-anchor/anchor.msh");
+        std::fs::write(dir.path().join("anchor.msh"), anchor).unwrap();
         std::fs::write(dir.path().join("exact.csv"), "time,value\n0,0\n1,1\n").unwrap();
         Folder(dir)
     }

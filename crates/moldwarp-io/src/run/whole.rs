@@ -40,7 +40,7 @@ pub(crate) fn probe_values(sim: &Simulation, out: &mut Vec<f64>) {
     for quantity in sim.plan().probes.iter().flat_map(|p| &p.quantities) {
         let values = &mut out[at..at + quantity.components().len()];
         match quantity {
-            Quantity::Reaction => {
+            Quantity::Reaction | Quantity::Contact => {
                 let part = Vec3::from_slice(values);
                 values.copy_from_slice(&symmetry.whole_force(part).to_array());
             }

@@ -1,12 +1,16 @@
 //! Bodies: which part of the mesh is filled with which material.
 
-use super::amount::{Named, RawVector, Spanned};
+use super::amount::{AmountOr, Named, RawVector, Spanned, each};
 use super::error::Fault;
 use super::quantity::Dimension;
-use super::raw::{RawBody, RawRegion, Text};
-use super::values::{choose, exactly_one, find, foreign, placed, positive, required, span, vector};
-use moldwarp::plan::{Body, NamedMaterial, Place, Region, Seeding};
+use super::raw::{RawBody, RawRegion, RawSpacing, Text, Texts};
+use super::values::{
+    at_most_one, choose, exactly_one, find, foreign, not_negative, placed, positive, required,
+    span, vector,
+};
+use moldwarp::plan::{Body, NamedMaterial, Place, Region, Seeding, Spacing};
 use moldwarp::{Mesh, Vec3};
+use std::ops::Range;
 
 pub(super) fn bodies(
     raw: &Named<RawBody>,
@@ -35,7 +39,7 @@ fn body(
         &[("volume", span(&raw.volume)), ("region", span(&raw.region))],
     )?;
     let place = match (&raw.volume, &raw.region) {
-        (Some(volume), _) => Place::VolumeGroup(volume_group(volume, mesh)?),
+        (Some(volume), _) => Place::Volumes(volumes(volume, mesh)?),
         (None, Some(region)) => Place::Region(checked_region(region, mesh)?),
         (None, None) => return Err(Fault::new("a body needs a place")),
     };
@@ -54,25 +58,91 @@ fn body(
         name: name.get_ref().clone(),
         place,
         material,
-        seeding: seeding(raw.particles_per_element.as_ref())?,
+        seeding: seeding(raw)?,
     })
 }
 
 /// The volume's number; one without elements is an error.
-pub(super) fn volume_group(volume: &Text, mesh: &Mesh) -> Result<usize, Fault> {
+pub(super) fn volume_group(name: (Range<usize>, &str), mesh: &Mesh) -> Result<usize, Fault> {
     let names = mesh.volume_groups.iter().map(|g| g.name.as_str());
-    let group = find(placed(volume), "volume", "volumes of the mesh", names)?;
+    let group = find(name.clone(), "volume", "volumes of the mesh", names)?;
     if mesh.volume_groups[group].elements.is_empty() {
-        return Err(
-            Fault::new(format!("volume `{}` is empty", volume.get_ref()))
-                .at(volume.span(), "has no elements")
-                .help("choose another volume, or mesh this one"),
-        );
+        return Err(Fault::new(format!("volume `{}` is empty", name.1))
+            .at(name.0, "has no elements")
+            .help("choose another volume, or mesh this one"));
     }
     Ok(group)
 }
 
-fn seeding(raw: Option<&Spanned<i64>>) -> Result<Seeding, Fault> {
+/// The volumes' numbers, at least one and none twice.
+pub(super) fn volumes(raw: &Texts, mesh: &Mesh) -> Result<Vec<usize>, Fault> {
+    let mut found = Vec::new();
+    for (span, name) in each(raw) {
+        let group = volume_group((span.clone(), name), mesh)?;
+        if found.contains(&group) {
+            return Err(Fault::new(format!("`{name}` is listed twice")).at(span, "again here"));
+        }
+        found.push(group);
+    }
+    if found.is_empty() {
+        return Err(Fault::new("name at least one volume").at(raw.span(), "an empty list"));
+    }
+    Ok(found)
+}
+
+fn seeding(raw: &RawBody) -> Result<Seeding, Fault> {
+    at_most_one(&[
+        ("particles_per_element", span(&raw.particles_per_element)),
+        ("particle_spacing", span(&raw.particle_spacing)),
+    ])?;
+    match &raw.particle_spacing {
+        Some(given) => Ok(Seeding::Spacing(spacing(given)?)),
+        None => per_element(raw.particles_per_element.as_ref()),
+    }
+}
+
+/// The same everywhere, or graded by the distance from a line.
+fn spacing(raw: &Spanned<AmountOr<RawSpacing>>) -> Result<Spacing, Fault> {
+    let table = match raw.get_ref() {
+        AmountOr::Amount(amount) => {
+            let amount = Spanned::new(raw.span(), amount.clone());
+            let spacing = positive("particle_spacing", &amount, Dimension::Length)?;
+            return Ok(Spacing {
+                start: Vec3::ZERO,
+                end: Vec3::ZERO,
+                points: vec![[0.0, spacing]],
+            });
+        }
+        AmountOr::Table(table) => table,
+    };
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for row in table.points.get_ref() {
+        let [distance, spacing] = row.get_ref().as_slice() else {
+            return Err(Fault::new("a point is a distance and a spacing")
+                .at(row.span(), format!("has {} entries", row.get_ref().len()))
+                .help("write points = [[\"0.5 m\", \"20 mm\"], [\"3 m\", \"100 mm\"]]"));
+        };
+        let from = not_negative("distance", distance, Dimension::Length)?;
+        if points.last().is_some_and(|last| from <= last[0]) {
+            return Err(
+                Fault::new("the distances of a particle spacing must increase")
+                    .at(distance.span(), "not farther than the point before"),
+            );
+        }
+        points.push([from, positive("spacing", spacing, Dimension::Length)?]);
+    }
+    if points.is_empty() {
+        return Err(Fault::new("a particle spacing needs at least one point")
+            .at(table.points.span(), "has none"));
+    }
+    Ok(Spacing {
+        start: vector("start", &table.start, Dimension::Length)?,
+        end: vector("end", &table.end, Dimension::Length)?,
+        points,
+    })
+}
+
+fn per_element(raw: Option<&Spanned<i64>>) -> Result<Seeding, Fault> {
     match raw {
         None => Ok(Seeding::Four),
         Some(n) => match n.get_ref() {

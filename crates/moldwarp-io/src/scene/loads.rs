@@ -144,9 +144,10 @@ fn bears(raw: &RawLoad, surfaces: &[usize], body: &Body, mesh: &Mesh) -> Result<
 /// Which elements the body fills, at least in part.
 fn filled(body: &Body, mesh: &Mesh) -> Vec<bool> {
     match &body.place {
-        Place::VolumeGroup(group) => {
+        Place::Volumes(groups) => {
             let mut filled = vec![false; mesh.tets.len()];
-            for &e in &mesh.volume_groups[*group].elements {
+            let groups = groups.iter().map(|&g| &mesh.volume_groups[g]);
+            for &e in groups.flat_map(|g| &g.elements) {
                 filled[e as usize] = true;
             }
             filled

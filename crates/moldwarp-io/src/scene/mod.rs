@@ -17,6 +17,7 @@ mod initial_stress;
 mod loads;
 mod materials;
 mod mesh;
+mod mesh_motion;
 mod numerics;
 mod output;
 mod overrides;
@@ -86,6 +87,7 @@ pub(crate) struct Origin {
     overrides: Vec<overrides::Override>,
     time_step: Option<Range<usize>>,
     initial_stress: Option<Range<usize>>,
+    mesh_motion: Option<Range<usize>>,
     /// Names of bodies and where they stand.
     bodies: Vec<(String, Range<usize>)>,
     /// The same of probes.
@@ -108,6 +110,7 @@ impl Origin {
             (SetupError::Seeding(SeedingError::Overlap { first, second, .. }), _) => {
                 self.overlap(first, second)
             }
+            (SetupError::Motion(error), _) => mesh_motion::explain(error, self.mesh_motion.clone()),
             (SetupError::Inherited(error), _) => earlier::explain(error),
             (SetupError::Contact(error), _) => contacts::explain(error, &self.surfaces)
                 .unwrap_or_else(|| Fault::new(error.to_string())),
@@ -256,9 +259,17 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     let (mesh, element_tags) = mesh::mesh(&raw.mesh, &folder, &mut notes)?;
     let symmetry = symmetry::symmetry(raw, &mesh, gravity, &mut notes)?;
     let bodies = bodies::bodies(&raw.bodies, &mesh, &materials)?;
+    let motion = raw.mesh_motion.as_ref();
+    let mesh_motion = mesh_motion::mesh_motion(motion, &mesh, &bodies, gravity)?;
     let boundaries = boundaries::boundaries(&raw.boundaries, &mesh)?;
     let loads = loads::loads(&raw.loads, &mesh, symmetry.as_ref(), &bodies)?;
-    let probes = probes::probes(&raw.probes, &mesh, &bodies, &boundaries, &mut notes)?;
+    let probes = probes::probes(
+        &raw.probes,
+        (&mesh, gravity),
+        &bodies,
+        &boundaries,
+        &mut notes,
+    )?;
     let named = stages::Named {
         bodies: &bodies,
         materials: &materials,
@@ -305,6 +316,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
             probes,
             initial_stress,
             inherited: Particles::default(),
+            mesh_motion,
             numerics,
             stages,
         },
@@ -319,6 +331,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         origin: Origin {
             time_step: values::span(&raw.numerics.time_step),
             initial_stress: values::span(&raw.initial_stress),
+            mesh_motion: values::span(&raw.mesh_motion),
             bodies: (raw.bodies.0.iter())
                 .map(|(name, _)| (name.get_ref().clone(), name.span()))
                 .collect(),

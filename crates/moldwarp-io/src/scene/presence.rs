@@ -4,7 +4,7 @@ use super::amount::{Spanned, each};
 use super::error::Fault;
 use super::raw::{RawBody, RawContact, RawLoad, RawStage, Text, Texts};
 use super::values::find;
-use moldwarp::plan::{Body, Contact, ContactSurface, Item, Load, Stage};
+use moldwarp::plan::{Body, Contact, ContactSurface, Item, Load, Place, Stage};
 use std::ops::Range;
 
 /// A body and where its name stands.
@@ -18,6 +18,14 @@ pub(super) struct Presence<'a> {
     add: Vec<Vec<Placed>>,
     /// Which bodies are there at the start, and then in each stage.
     there: Vec<Vec<bool>>,
+}
+
+/// The volumes of the mesh that a body fills, as listed.
+fn groups(body: &Body) -> &[usize] {
+    match &body.place {
+        Place::Volumes(groups) => groups,
+        Place::Region(_) => &[],
+    }
 }
 
 impl<'a> Presence<'a> {
@@ -164,14 +172,18 @@ impl<'a> Presence<'a> {
         for (stage, there) in self.there.iter().enumerate() {
             for (b, (_, raw)) in raw.iter().enumerate().filter(|b| there[b.0]) {
                 let Some(volume) = &raw.volume else { continue };
-                let same = |o: &usize| there[*o] && self.bodies[*o].place == self.bodies[b].place;
-                let Some(other) = (0..b).find(same) else {
+                let (own, named) = (groups(&self.bodies[b]), each(volume));
+                let twice = (0..b).filter(|&o| there[o]).find_map(|o| {
+                    let other = groups(&self.bodies[o]);
+                    let same = own.iter().position(|g| other.contains(g))?;
+                    Some((&self.bodies[o].name, same))
+                });
+                let Some((other, same)) = twice else {
                     continue;
                 };
-                let other = &self.bodies[other].name;
-                let fault =
-                    Fault::new(format!("two bodies fill the volume `{}`", volume.get_ref()))
-                        .at(volume.span(), format!("already filled by `{other}`"));
+                let (place, name) = named[same].clone();
+                let fault = Fault::new(format!("two bodies fill the volume `{name}`"))
+                    .at(place, format!("already filled by `{other}`"));
                 return Err(match stage {
                     0 => fault.help("a place can hold one body only"),
                     _ => fault.help(format!(

@@ -8,15 +8,15 @@ use super::raw::{RawProbe, Text};
 use super::surfaces::surface;
 use super::unsupported;
 use super::values::{choose, exactly_one, find, fits_a_column, placed, span, vector};
-use moldwarp::Mesh;
 use moldwarp::plan::{Body, Boundary, Probe, Quantity, Target};
+use moldwarp::{Mesh, Vec3};
 
 /// Column groups of the history that are not probes.
 const RESERVED: [&str; 2] = ["energy", "contact"];
 
 pub(super) fn probes(
     raw: &Named<RawProbe>,
-    mesh: &Mesh,
+    (mesh, gravity): (&Mesh, Vec3),
     bodies: &[Body],
     boundaries: &[Boundary],
     notes: &mut Vec<String>,
@@ -33,7 +33,7 @@ pub(super) fn probes(
                 name.get_ref()
             ));
         }
-        let quantities = quantities(raw, target, boundaries)?;
+        let quantities = quantities(raw, target, boundaries, gravity)?;
         probes.push(Probe {
             name: name.get_ref().clone(),
             target,
@@ -71,7 +71,7 @@ fn target(name: &Text, raw: &RawProbe, mesh: &Mesh, bodies: &[Body]) -> Result<T
             let names = bodies.iter().map(|b| b.name.as_str());
             Ok(Target::Body(find(placed(body), "body", "bodies", names)?))
         }
-        (.., Some(volume)) => Ok(Target::Volume(volume_group(volume, mesh)?)),
+        (.., Some(volume)) => Ok(Target::Volume(volume_group(placed(volume), mesh)?)),
         (_, Some(point), ..) => {
             let x = vector("point", point, Dimension::Length)?;
             let [low, high] = mesh.bounds();
@@ -90,6 +90,7 @@ fn quantities(
     raw: &RawProbe,
     target: Target,
     boundaries: &[Boundary],
+    gravity: Vec3,
 ) -> Result<Vec<Quantity>, Fault> {
     let held = matches!(target, Target::Surface(s)
         if boundaries.iter().any(|b| b.surfaces.contains(&s)));
@@ -111,6 +112,21 @@ fn quantities(
             );
         }
         check_volume(span.clone(), quantity, target)?;
+        if quantity == Quantity::Contact && !matches!(target, Target::Surface(_)) {
+            return Err(Fault::new("`contact` is the force on a surface")
+                .at(span, "this probe has none")
+                .help(
+                    "give the probe a `surface` of a body in an aligned contact; the whole force is in \
+                     the columns contact.<name>",
+                ));
+        }
+        if quantity == Quantity::Penetration && gravity == Vec3::ZERO {
+            return Err(
+                Fault::new("`penetration` is the displacement along gravity")
+                    .at(span, "and there is none")
+                    .help("record `displacement`"),
+            );
+        }
         if chosen.contains(&quantity) {
             return Err(Fault::new(format!("`{word}` is listed twice")).at(span, "again here"));
         }

@@ -30,6 +30,11 @@ pub(super) struct RawScene {
     /// [Mesh](#mesh).
     /// type: table
     pub mesh: Spanned<RawMesh>,
+    /// [Motion](#mesh-motion) of the mesh with a body; without this table it stays, but for absorbing
+    /// boundaries that it follows.
+    /// type: table
+    /// default: –
+    pub mesh_motion: Option<Spanned<RawMeshMotion>>,
     /// [Symmetry](#symmetry) of which the mesh is a part.
     /// type: table
     /// default: none
@@ -214,10 +219,10 @@ pub(super) struct RawMaterial {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawBody {
-    /// All elements of a volume of the mesh; no two bodies the same at the same time.
-    /// type: name
+    /// All elements of volumes of the mesh; no two bodies the same at the same time.
+    /// type: name or list of names
     /// default: –
-    pub volume: Option<Text>,
+    pub volume: Option<Texts>,
     /// The seeding points of any element that lie in a solid, see [regions](#regions).
     /// type: table
     /// default: –
@@ -229,11 +234,52 @@ pub(super) struct RawBody {
     /// type: 1, 4 or 10
     /// default: 4
     pub particles_per_element: Option<Spanned<i64>>,
+    /// Distance between particles, instead of their number in each element: where fine elements of a
+    /// [moving mesh](#mesh-motion) will come by. A length, or a table that
+    /// [grades](#particle-spacing) it. At least four particles are in each element.
+    /// type: length > 0, or `{ start, end, points }`
+    /// default: –
+    pub particle_spacing: Option<Spanned<AmountOr<RawSpacing>>>,
     /// Horizontal over vertical [initial stress](#initial-stress); without it the body has none. Not
     /// for a body that a stage adds.
     /// type: number > 0
     /// default: –
     pub k0: Option<RawAmount>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawSpacing {
+    /// One end of the line that distances are taken from.
+    /// type: length × 3
+    pub start: RawVector,
+    /// Its other end.
+    /// type: length × 3
+    pub end: RawVector,
+    /// Distance from the line and spacing; linear between points, constant beyond the first and the
+    /// last.
+    /// type: list of length × 2; distances increasing
+    pub points: Spanned<Vec<RawVector>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawMeshMotion {
+    /// The body that takes the mesh along; it fills whole elements.
+    /// type: name
+    pub driver: Text,
+    /// Volumes of the mesh that go rigidly with the driver; its own need not be among them.
+    /// type: name or list of names
+    pub moving: Texts,
+    /// Volumes that are compressed and stretched between the moving ones and where the mesh is held.
+    /// Every element is the driver's, moving or of the blend.
+    /// type: name or list of names
+    /// default: none
+    pub blend: Option<Texts>,
+    /// Along which the mesh moves.
+    /// type: number × 3, not 0
+    /// default: that of gravity
+    pub direction: Option<RawVector>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,15 +1,12 @@
 //! What the scene format has a name for but this version cannot compute.
 
 /// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
-const KEYS: [(&str, &str); 2] = [
-    ("particle_spacing", "particles_per_element"),
-    ("checkpoint_interval", "frames"),
-];
+const KEYS: [(&str, &str); 1] = [("checkpoint_interval", "frames")];
 
 /// Boundaries.
 pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];
 /// What probes record.
-pub(super) const QUANTITIES: [&str; 1] = ["penetration"];
+pub(super) const QUANTITIES: [&str; 0] = [];
 
 /// Whether `key` is one of them where `siblings` are the keys that are known.
 pub(super) fn key(key: &str, siblings: &[&str]) -> bool {

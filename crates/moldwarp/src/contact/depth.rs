@@ -32,12 +32,13 @@ enum Surface {
 
 impl Surface {
     fn new(mesh: &Mesh, place: &Place) -> Surface {
-        match *place {
-            Place::Region(region) => Surface::Region(region, mesh.bounds()),
-            Place::VolumeGroup(group) => {
+        match place {
+            Place::Region(region) => Surface::Region(*region, mesh.bounds()),
+            Place::Volumes(groups) => {
                 let mut inside = vec![false; mesh.tets.len()];
-                let elements = &mesh.volume_groups[group].elements;
-                elements.iter().for_each(|&e| inside[e as usize] = true);
+                let groups = groups.iter().map(|&g| &mesh.volume_groups[g]);
+                let elements = groups.flat_map(|g| &g.elements);
+                elements.for_each(|&e| inside[e as usize] = true);
                 Surface::Faces(faces_by_node(mesh, &inside))
             }
         }

@@ -168,6 +168,36 @@ impl Contacts {
         self.first[contact as usize] == field
     }
 
+    /// Nodes of a surface on faces of aligned contacts, ascending, each with the part of the faces'
+    /// area there that belongs to the surface.
+    pub fn shares(&self, mesh: &Mesh, surface: usize) -> Vec<(u32, f64)> {
+        let mut corners: Vec<[u32; 3]> = mesh.surfaces[surface]
+            .faces
+            .iter()
+            .map(|&f| sorted(mesh.face_nodes(f)))
+            .collect();
+        corners.sort_unstable();
+        let mut nodes: Vec<u32> = corners.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let share = |&n: &u32| {
+            let faces = self.faces.iter().flat_map(|faces| depth::at(faces, n));
+            let (mut own, mut all) = (0.0, 0.0);
+            for face in faces {
+                let area = mesh.face_area(face).length();
+                all += area;
+                if corners
+                    .binary_search(&sorted(mesh.face_nodes(face)))
+                    .is_ok()
+                {
+                    own += area;
+                }
+            }
+            (own > 0.0).then_some((n, own / all))
+        };
+        nodes.iter().filter_map(share).collect()
+    }
+
     /// Whether a particle of a field must not go from an element to another one: it would pass a face
     /// of an aligned contact.
     #[inline]
@@ -284,6 +314,11 @@ impl Contacts {
         }
         (sums.map(|s| s.normalize_or_zero()), count, area)
     }
+}
+
+fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
+    nodes.sort_unstable();
+    nodes
 }
 
 /// The elements that an aligned contact's first side fills.

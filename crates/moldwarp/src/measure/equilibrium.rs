@@ -38,7 +38,7 @@ impl Forces {
         let left = node.mass * node.acceleration - node.damping;
         self.unbalanced += left.length();
         let (reaction, load) = (node.reaction + node.absorbing, node.load);
-        self.applied += (gravity * node.mass).length() + load.length() + reaction.length();
+        self.applied += (gravity * node.weighed).length() + load.length() + reaction.length();
     }
 
     fn ratio(&self) -> f64 {

@@ -10,7 +10,8 @@
 //! with a' the accelerations that particles receive. `transfer` is the difference between the
 //! trapezoidal work of all forces and this: what the lumped mass matrix and the average of the
 //! remap take (or give back). The work of stresses on the mesh differs from that in the
-//! particles by `integration` (σ̄ V_e against Σ σ_p V_p), `smoothing` (σ_m (Δε_v − Δε̄_v) V) and
+//! particles by `integration` (σ̄ V_e against Σ σ_p V_p, and evened weights against those of
+//! particles), `smoothing` (σ_m (Δε_v − Δε̄_v) V) and
 //! `advection` (particles have moved through the mesh by the time the second half is booked, and
 //! its gradients are those of the step's start). All are positive where energy is lost.
 
@@ -23,6 +24,8 @@ use crate::step::Node;
 pub struct DriftWork {
     total: f64,
     gravity: f64,
+    /// Of the difference between the weights of nodes and those of particles.
+    evened: f64,
     load: f64,
     damping: f64,
     absorbing: f64,
@@ -37,6 +40,7 @@ impl DriftWork {
         let moved = 0.5 * node.moved;
         self.total += node.mass * node.acceleration.dot(moved);
         self.gravity += node.mass * gravity.dot(moved);
+        self.evened += (node.weighed - node.mass) * gravity.dot(moved);
         self.load += node.load.dot(moved);
         self.damping += node.damping.dot(moved);
         self.absorbing += node.absorbing.dot(moved);
@@ -50,6 +54,7 @@ impl Sum for DriftWork {
         DriftWork {
             total: self.total + other.total,
             gravity: self.gravity + other.gravity,
+            evened: self.evened + other.evened,
             load: self.load + other.load,
             damping: self.damping + other.damping,
             absorbing: self.absorbing + other.absorbing,
@@ -282,6 +287,7 @@ impl Ledger {
     fn half(&mut self, work: DriftWork) {
         self.now.transfer += work.total;
         self.now.advection -= work.gravity;
+        self.now.integration -= work.evened;
         self.now.load += work.load;
         self.now.damping -= work.damping;
         self.now.absorbed -= work.absorbing;

@@ -6,6 +6,7 @@
 //! mass-weighted mean of its particles; a part of the mesh on the particles in its elements.
 
 use crate::Vec3;
+use crate::contact::Contacts;
 use crate::mesh::Mesh;
 use crate::parallel::fold;
 use crate::particles::Particles;
@@ -41,6 +42,9 @@ struct SurfaceNode {
 #[derive(Clone, Debug, Default)]
 pub struct Probes {
     places: Vec<Place>,
+    /// Of probes that record the force of a contact: nodes of the surface, ascending, each with the
+    /// part of its body's faces there that belong to it. Nothing for others.
+    touching: Vec<Vec<(u32, f64)>>,
 }
 
 impl Probes {
@@ -62,7 +66,25 @@ impl Probes {
         };
         Probes {
             places: plan.probes.iter().map(place).collect(),
+            touching: Vec::new(),
         }
+    }
+
+    /// Finds the parts of contacts that probes look at; the name of one that looks at none is the
+    /// error.
+    pub(crate) fn find_contacts(&mut self, plan: &Plan, contacts: &Contacts) -> Result<(), String> {
+        for probe in &plan.probes {
+            let wanted = probe.quantities.contains(&Quantity::Contact);
+            let found = match probe.target {
+                Target::Surface(s) if wanted => contacts.shares(&plan.mesh, s),
+                _ => Vec::new(),
+            };
+            if wanted && found.is_empty() {
+                return Err(probe.name.clone());
+            }
+            self.touching.push(found);
+        }
+        Ok(())
     }
 
     /// Surfaces with a boundary have other elements beside them, as bodies have come or gone.
@@ -135,9 +157,16 @@ impl Probes {
 
     /// Appends the values of all columns.
     pub(crate) fn values(&self, sim: &Simulation, out: &mut Vec<f64>) {
-        for (probe, place) in sim.plan().probes.iter().zip(&self.places) {
+        let down = sim.plan().gravity.normalize_or_zero();
+        for (number, (probe, place)) in sim.plan().probes.iter().zip(&self.places).enumerate() {
             for &quantity in &probe.quantities {
                 match quantity {
+                    Quantity::Penetration => {
+                        out.push(place.vector(sim, Quantity::Displacement).dot(down) + 0.0);
+                    }
+                    Quantity::Contact => {
+                        out.extend(sim.contact_force(&self.touching[number]).to_array());
+                    }
                     Quantity::Stress => out.extend(place.stress(sim)),
                     Quantity::Volume => out.push(place.volume(sim)),
                     _ => out.extend(place.vector(sim, quantity).to_array()),
@@ -234,7 +263,9 @@ impl SurfaceNode {
             Quantity::Velocity => node.map_or(Vec3::ZERO, |n| n.grid_velocity),
             Quantity::Acceleration => node.map_or(Vec3::ZERO, |n| n.acceleration),
             Quantity::Reaction => sim.reaction(self.node),
-            Quantity::Stress | Quantity::Volume => Vec3::ZERO,
+            Quantity::Stress | Quantity::Volume | Quantity::Penetration | Quantity::Contact => {
+                Vec3::ZERO
+            }
         }
     }
 }
@@ -246,7 +277,11 @@ fn particle_vector(sim: &Simulation, p: usize, quantity: Quantity) -> Vec3 {
         Quantity::Position => particles.position[p],
         Quantity::Velocity => particles.velocity[p],
         Quantity::Acceleration => sim.acceleration_at(p),
-        Quantity::Reaction | Quantity::Stress | Quantity::Volume => Vec3::ZERO,
+        Quantity::Reaction
+        | Quantity::Stress
+        | Quantity::Volume
+        | Quantity::Penetration
+        | Quantity::Contact => Vec3::ZERO,
     }
 }
 

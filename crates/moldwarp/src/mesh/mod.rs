@@ -16,7 +16,7 @@ mod walls;
 pub use cylinder::{CylinderError, CylinderSector, Split};
 pub use generate::box_mesh;
 pub use geometry::{barycentric, tetrahedron_gradients};
-pub use motion::Follower;
+pub use motion::{Driven, Follower, MotionError, Zones};
 pub use quality::Quality;
 pub use walls::Walls;
 

@@ -97,7 +97,7 @@ impl Ground {
         Ok(ground)
     }
 
-    /// σ_v at a point, Pa, tension positive.
+    /// σ_v at a point, Pa, tension positive. Above the surface it goes on linearly.
     pub fn vertical(&self, x: Vec3) -> f64 {
         let z = x.dot(self.up);
         let layer = self
@@ -110,10 +110,22 @@ impl Ground {
         })
     }
 
+    /// Unit weight at a point, N/m³; above the surface that of the uppermost layer.
+    pub fn unit_weight(&self, x: Vec3) -> f64 {
+        let z = x.dot(self.up);
+        let layer = self.layers.iter().find(|l| z >= l.bottom);
+        layer.or(self.layers.last()).map_or(0.0, |l| l.unit_weight)
+    }
+
     /// Stress at a point of ground with this K₀, Pa.
     pub fn stress(&self, x: Vec3, k0: f64) -> Voigt {
-        let (vertical, n) = (self.vertical(x), self.up);
-        let horizontal = k0 * vertical;
+        let vertical = self.vertical(x);
+        self.tensor(vertical, k0 * vertical)
+    }
+
+    /// The tensor of a vertical and a horizontal stress.
+    pub fn tensor(&self, vertical: f64, horizontal: f64) -> Voigt {
+        let n = self.up;
         let along = |a: f64, b: f64| (vertical - horizontal) * a * b;
         [
             horizontal + along(n.x, n.x),

@@ -1,5 +1,5 @@
-//! Stages 7 and 8: particles move with the nodes, the mesh follows its boundaries, and each
-//! particle's element is found anew.
+//! Stages 7 and 8: particles move with the nodes, the mesh moves with its driver and its boundaries,
+//! and each particle's element is found anew.
 
 use super::state::moved;
 use super::{BLOCK, guard};
@@ -9,22 +9,46 @@ use crate::simulation::{Simulation, Stop};
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     move_particles(sim);
-    if sim.follower.moves() {
-        let Simulation {
-            plan,
-            active,
-            nodes,
-            follower,
-            ..
-        } = sim;
-        if let Some(element) = follower.follow(&mut plan.mesh, moved(active, nodes)) {
-            return Err(sim.turned_over(element));
-        }
+    let moves = sim.driven.moves() || sim.follower.moves();
+    if moves {
+        move_mesh(sim)?;
     }
     if locate(sim)? {
         sim.reorder();
     }
-    Ok(())
+    match sim.driven.degenerate(&sim.plan.mesh) {
+        Some(element) if moves => Err(sim.degenerate(element)),
+        _ => Ok(()),
+    }
+}
+
+/// The mesh goes with its driver and follows absorbing boundaries.
+fn move_mesh(sim: &mut Simulation) -> Result<(), Stop> {
+    let Simulation {
+        plan,
+        active,
+        nodes,
+        follower,
+        driven,
+        fields,
+        ..
+    } = sim;
+    let mesh = &mut plan.mesh;
+    if let Some(motion) = &plan.mesh_motion {
+        let field = fields.of(motion.driver as u16);
+        let own = |n: u32| {
+            let slot = active.slot_of_key[field * active.grid_nodes + n as usize];
+            let node = nodes.get(slot as usize);
+            node.map_or((0.0, Vec3::ZERO), |node| (node.mass, node.moved))
+        };
+        driven.shift(&mut mesh.nodes, own);
+    }
+    follower.shift(&mut mesh.nodes, moved(active, nodes));
+    mesh.update_geometry();
+    match mesh.turned_over() {
+        Some(element) => Err(sim.turned_over(element)),
+        None => Ok(()),
+    }
 }
 
 /// x_p += Σ N_i Δu_i (Jassim et al. Eq. 9).

@@ -104,6 +104,7 @@ mod tests {
             probes: vec![],
             initial_stress: None,
             inherited: Default::default(),
+            mesh_motion: None,
             numerics: Numerics::default(),
             stages: vec![Stage::new("run", Until::Steps(1))],
         };

@@ -26,6 +26,7 @@ mod contact;
 mod correction;
 mod guard;
 mod nodes;
+mod reference;
 mod remap;
 mod rigid;
 mod smoothing;
@@ -38,6 +39,7 @@ mod to_particles;
 
 pub use active::{Active, Grid};
 pub(crate) use nodes::unheld;
+pub(crate) use reference::Reference;
 pub use state::{CellForce, CellStrain, CellSums, Node};
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
@@ -120,6 +122,7 @@ mod tests {
             probes: vec![],
             initial_stress: None,
             inherited: Default::default(),
+            mesh_motion: None,
             numerics: Numerics::default(),
             stages: vec![Stage::new("run", Until::Steps(1000))],
         };

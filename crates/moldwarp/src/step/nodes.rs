@@ -26,8 +26,10 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         constraints,
         absorbing,
         gravity,
+        reference,
         ..
     } = sim;
+    let weighs = reference.is_some();
     let (active, mesh, gravity, cells) = (&*active, &plan.mesh, *gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
@@ -48,7 +50,11 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             }
             let mesh_node = active.nodes[slot];
             let internal = internal_force(slot, active, mesh, cells);
-            let unbalanced = internal + gravity * node.mass + node.load;
+            node.weighed = match weighs {
+                true => weighed(slot, active, cells),
+                false => node.mass,
+            };
+            let unbalanced = internal + gravity * node.weighed + node.load;
             let constraint = constraints.of(mesh_node);
             // What a constraint or an absorbing boundary holds is balanced and not to be damped.
             let free = constraint.map_or(Mat3::IDENTITY, |c| c.free);
@@ -109,6 +115,12 @@ fn internal_force(slot: usize, active: &Active, mesh: &Mesh, cells: &Cells) -> V
     active.attached(slot).iter().map(force).sum()
 }
 
+/// The mass whose weight pulls at a node where there is a reference stress, kg.
+fn weighed(slot: usize, active: &Active, cells: &Cells) -> f64 {
+    let own = |&(c, local): &(u32, u8)| cells.forces[c as usize].weighed[local as usize];
+    active.attached(slot).iter().map(own).sum()
+}
+
 /// Forces that nodes would follow were nothing to hold them, N, by mesh node: for what is to begin
 /// in equilibrium.
 pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
@@ -120,7 +132,11 @@ pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
             .map(|slot| {
                 let node = &sim.nodes[slot];
                 let internal = internal_force(slot, &sim.active, &sim.plan.mesh, &sim.cells);
-                internal + sim.gravity * node.mass + node.load
+                let weighed = match sim.reference {
+                    Some(_) => weighed(slot, &sim.active, &sim.cells),
+                    None => node.mass,
+                };
+                internal + sim.gravity * weighed + node.load
             })
             .sum()
     }

@@ -28,7 +28,7 @@ pub(super) fn predict(sim: &mut Simulation, h: f64) {
             }
             mass += node.mass;
             momentum += node.velocity * node.mass;
-            force += *gravity * node.mass + node.load;
+            force += *gravity * node.weighed + node.load;
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 held.add(&constraint.free);
             }
@@ -41,7 +41,7 @@ pub(super) fn predict(sim: &mut Simulation, h: f64) {
         body.velocity = body.free * (body.before + force * (h / mass));
         for slot in own(active, body.field) {
             let node = &mut nodes[slot];
-            let force = *gravity * node.mass + node.load;
+            let force = *gravity * node.weighed + node.load;
             node.damping = Vec3::ZERO;
             node.moved = moved;
             node.reaction = body.free * force - force;

@@ -33,6 +33,9 @@ pub struct Node {
     pub filling: f64,
     /// Mass over volume of all elements attached, kg/m³.
     pub density: f64,
+    /// The mass whose weight pulls at the node, kg: `mass`, but for a reference stress (see
+    /// `step/reference.rs`).
+    pub weighed: f64,
     /// Averaged volumetric strain of the attached cells.
     pub volumetric: f64,
     /// A quarter of the averaged mean stress of the attached cells, Pa.
@@ -62,6 +65,8 @@ pub struct CellSums {
     pub moduli: [f64; 2],
     /// Greatest constrained modulus of its particles, Pa.
     pub wave_modulus: f64,
+    /// Of particles with a reference stress: Σ σ_v V_p and Σ K₀ σ_v V_p, J, and Σ V_p, m³.
+    pub reference: [f64; 3],
 }
 
 /// Stress times volume that acts on a cell's nodes: f_i = −S ∇N_i.
@@ -73,6 +78,8 @@ pub struct CellForce {
     pub smoothed: f64,
     /// The viscous part, J.
     pub viscous: Voigt,
+    /// The mass whose weight pulls at each node, kg; set where there is a reference stress only.
+    pub weighed: [f64; 4],
     /// Whether the cell counts as filled.
     pub filled: bool,
 }
@@ -94,11 +101,25 @@ impl CellForce {
     }
 }
 
-/// Displacements in the last drift by mesh node, m; zero where no particle is near.
+/// Displacements in the last drift by mesh node, m: the mean of all fields by mass; zero where no
+/// particle is near.
 pub(super) fn moved<'a>(active: &'a Active, nodes: &'a [Node]) -> impl Fn(u32) -> Vec3 + 'a {
     |mesh_node| {
-        let slot = active.slot_of_key[mesh_node as usize] as usize;
-        nodes.get(slot).map_or(Vec3::ZERO, |node| node.moved)
+        let keys = (mesh_node as usize..active.slot_of_key.len()).step_by(active.grid_nodes);
+        let slots = keys.filter_map(|key| nodes.get(active.slot_of_key[key] as usize));
+        let mut present = slots.filter(|node| node.mass > 0.0);
+        let Some(first) = present.next() else {
+            return Vec3::ZERO;
+        };
+        let Some(second) = present.next() else {
+            return first.moved;
+        };
+        let (mut mass, mut sum) = (0.0, Vec3::ZERO);
+        for node in [first, second].into_iter().chain(present) {
+            mass += node.mass;
+            sum += node.moved * node.mass;
+        }
+        sum / mass
     }
 }
 

@@ -28,9 +28,11 @@ fn sum_cells(sim: &mut Simulation) {
         active,
         cells,
         elasticity,
+        reference,
         ..
     } = sim;
     let (mesh, active, particles, elasticity) = (&plan.mesh, &*active, &*particles, &*elasticity);
+    let reference = reference.as_ref();
     let items = (
         ByCell::new(&active.offsets, 0..particles.len()),
         &mut cells.sums[..],
@@ -69,6 +71,9 @@ fn sum_cells(sim: &mut Simulation) {
                 sum.moduli[0] += lame * volume;
                 sum.moduli[1] += shear * volume;
                 sum.wave_modulus = sum.wave_modulus.max(wave);
+                if let Some(reference) = reference {
+                    reference.add(sum, body, particles.position[p], volume);
+                }
             }
         }
     });
@@ -133,9 +138,12 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
         cells,
         ledger,
         clock,
+        reference,
+        gravity,
         ..
     } = sim;
     let (mesh, active, nodes, sums) = (&plan.mesh, &*active, &nodes[..], &cells.sums[..]);
+    let reference = reference.as_ref().map(|r| r.at(*gravity));
     let mixed = plan.numerics.integration == Integration::Mixed;
     // A viscous stress is C : ε̇ times this over the last step; there is none before the first.
     let per_step = if before > 0.0 {
@@ -155,8 +163,17 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             let corners = active.cell_nodes[c].map(|n| &nodes[n as usize]);
             let sum = &sums[c];
             force.filled = mixed && corners.iter().all(|n| n.filling > FILLED);
+            force.weighed = sum.mass;
             force.stress = if force.filled {
-                mean_stress(c, active, mesh, sums).map(|s| s * mesh.volumes[e])
+                let around = around(c, active, mesh, sums);
+                let mean = match &reference {
+                    Some(reference) => {
+                        force.weighed = reference.weighed(mesh, e, sum.mass, &around);
+                        reference.mean_stress(mesh, e, &around)
+                    }
+                    None => around.mean_stress(),
+                };
+                mean.map(|s| s * mesh.volumes[e])
             } else {
                 sum.stress
             };
@@ -181,27 +198,55 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     ledger.grid_stress_work(work);
 }
 
-/// σ̄ = Σ σ_p V_p / Σ V_p; in a cell without particles that of the cells across its faces,
-/// walls excepted.
-fn mean_stress(c: usize, active: &super::Active, mesh: &crate::Mesh, sums: &[CellSums]) -> Voigt {
-    let (mut stress, mut volume) = (sums[c].stress, sums[c].volume);
-    if volume == 0.0 {
-        for &neighbour in mesh.neighbours[active.elements[c] as usize]
-            .iter()
-            .filter(|&&n| n != NONE)
-        {
-            let other = active.cell(neighbour as usize, usize::from(active.fields[c]));
-            if let Some(other) = other.filter(|&other| active.share_a_face(c, other)) {
-                add_scaled(&mut stress, &sums[other].stress, 1.0);
-                volume += sums[other].volume;
-            }
+/// Sums that make the mean of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Around {
+    /// Σ σ_p V_p, J.
+    pub stress: Voigt,
+    /// Σ V_p, m³.
+    pub volume: f64,
+    /// As [`CellSums::reference`].
+    pub reference: [f64; 3],
+}
+
+impl Around {
+    /// σ̄ = Σ σ_p V_p / Σ V_p, Pa.
+    pub fn mean_stress(&self) -> Voigt {
+        if self.volume > 0.0 {
+            self.stress.map(|s| s / self.volume)
+        } else {
+            self.stress
         }
     }
-    if volume > 0.0 {
-        stress.map(|s| s / volume)
-    } else {
-        stress
+
+    fn add(&mut self, sum: &CellSums) {
+        add_scaled(&mut self.stress, &sum.stress, 1.0);
+        self.volume += sum.volume;
+        for (own, more) in self.reference.iter_mut().zip(sum.reference) {
+            *own += more;
+        }
     }
+}
+
+/// Sums over the particles of a cell; without any, over those of the cells across its faces, walls
+/// excepted.
+fn around(c: usize, active: &super::Active, mesh: &crate::Mesh, sums: &[CellSums]) -> Around {
+    let mut around = Around::default();
+    if sums[c].volume > 0.0 {
+        around.stress = sums[c].stress;
+        (around.volume, around.reference) = (sums[c].volume, sums[c].reference);
+        return around;
+    }
+    for &neighbour in mesh.neighbours[active.elements[c] as usize]
+        .iter()
+        .filter(|&&n| n != NONE)
+    {
+        let other = active.cell(neighbour as usize, usize::from(active.fields[c]));
+        if let Some(other) = other.filter(|&other| active.share_a_face(c, other)) {
+            around.add(&sums[other]);
+        }
+    }
+    around
 }
 
 /// Moduli (λ, G) times strain.

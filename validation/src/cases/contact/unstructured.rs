@@ -41,7 +41,7 @@ fn plan(friction: f64, surface: ContactSurface) -> Plan {
     let base = plan.mesh.volume_group("base").expect("it is in the mesh");
     plan.bodies = vec![
         Body {
-            place: Place::VolumeGroup(base),
+            place: Place::Volumes(vec![base]),
             ..body("base", Region::Box { min, max })
         },
         body("block", Region::Box { min, max }),

@@ -38,9 +38,54 @@ fn shape() {
             "until = \"equilibrium\"",
         ),
         case(
-            "another key for later",
+            "number and spacing of particles",
             "particles_per_element = 4",
-            "particle_spacing = \"5 cm\"",
+            "particles_per_element = 4\nparticle_spacing = \"5 cm\"",
+        ),
+        case(
+            "spacing without unit",
+            "particles_per_element = 4",
+            "particle_spacing = \"5\"",
+        ),
+        case(
+            "spacing that goes back",
+            "particles_per_element = 4",
+            "particle_spacing = { start = [0, 0, 0], end = [0, 0, 1], points = [[1, 0.1], [1, 0.2]] }",
+        ),
+        case(
+            "volume listed twice",
+            "volume = \"box\"",
+            "volume = [\"box\", \"box\"]",
+        ),
+        case(
+            "no driver",
+            "[numerics]",
+            "[mesh_motion]\nmoving = \"box\"\n[numerics]",
+        ),
+        case(
+            "misspelt driver",
+            "[numerics]",
+            "[mesh_motion]\ndriver = \"leyer\"\nmoving = \"box\"\n[numerics]",
+        ),
+        case(
+            "misspelt zone",
+            "[numerics]",
+            "[mesh_motion]\ndriver = \"layer\"\nmoving = \"bx\"\n[numerics]",
+        ),
+        case(
+            "moving and blended",
+            "[numerics]",
+            "[mesh_motion]\ndriver = \"layer\"\nmoving = \"box\"\nblend = \"box\"\n[numerics]",
+        ),
+        case(
+            "motion without direction",
+            "[numerics]",
+            "[mesh_motion]\ndriver = \"layer\"\nmoving = \"box\"\n[numerics]",
+        ),
+        case(
+            "penetration without gravity",
+            "quantities = [\"displacement\"",
+            "quantities = [\"penetration\", \"displacement\"",
         ),
         case(
             "gravity missing",

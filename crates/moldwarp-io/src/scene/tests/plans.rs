@@ -26,9 +26,9 @@ fn the_sample_becomes_its_plan() {
     let body = &plan.bodies[0];
     assert_eq!(
         (body.name.as_str(), &body.place),
-        ("layer", &Place::VolumeGroup(0))
+        ("layer", &Place::Volumes(vec![0]))
     );
-    assert_eq!((body.material, body.seeding), (0, Seeding::Four));
+    assert_eq!((body.material, &body.seeding), (0, &Seeding::Four));
     assert_eq!(plan.boundaries[0].name, "sides");
     assert_eq!(plan.boundaries[0].surfaces, [0, 1, 2, 3]);
     assert!(matches!(plan.boundaries[0].kind, BoundaryKind::Roller));

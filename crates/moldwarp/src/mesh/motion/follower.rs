@@ -1,4 +1,4 @@
-//! A mesh whose absorbing boundaries follow the material.
+//! Absorbing boundaries follow the material.
 //!
 //! The nodes of an absorbing surface move along its normal with the material, so that no particle
 //! is left outside when the boundary yields. The interior is stretched to suit: every other node
@@ -6,12 +6,10 @@
 //! surface and 0 where another boundary holds the normal direction. Where nothing holds it the
 //! weight is 1 everywhere and the mesh goes along as a whole.
 
-use super::{Face, Mesh};
+use super::{FREE_COSINE, harmonic};
+use crate::mesh::{Face, Mesh};
 use crate::{Mat3, Vec3};
 use rayon::prelude::*;
-
-/// How far a direction may be turned by a node's constraint and still count as free (about 18°).
-const FREE_COSINE: f64 = 0.95;
 
 /// A node and the surface node it follows.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +30,14 @@ pub struct Follower {
 
 impl Follower {
     /// `surfaces` are the absorbing ones; `free` projects a vector into the directions that a
-    /// node's fixities, rollers and prescribed velocities leave.
-    pub fn new(mesh: &Mesh, surfaces: &[&[Face]], free: impl Fn(u32) -> Mat3 + Sync) -> Follower {
+    /// node's fixities, rollers and prescribed velocities leave. Nodes that are `driven` by a body do
+    /// not follow.
+    pub fn new(
+        mesh: &Mesh,
+        surfaces: &[&[Face]],
+        free: impl Fn(u32) -> Mat3 + Sync,
+        driven: impl Fn(u32) -> bool + Sync,
+    ) -> Follower {
         let normals: Vec<Vec<(u32, Vec3)>> =
             surfaces.iter().map(|f| node_normals(mesh, f)).collect();
         let mut follows = Vec::new();
@@ -41,7 +45,7 @@ impl Follower {
             let mean = own.iter().map(|n| n.1).sum::<Vec3>().normalize_or_zero();
             let mut weights: Vec<Option<f64>> = (0..mesh.nodes.len() as u32)
                 .into_par_iter()
-                .map(|n| ((free(n) * mean).length() < FREE_COSINE).then_some(0.0))
+                .map(|n| ((free(n) * mean).length() < FREE_COSINE || driven(n)).then_some(0.0))
                 .collect();
             for (_, other) in normals.iter().enumerate().filter(|&(o, _)| o != s) {
                 let along = other.iter().filter(|n| n.1.dot(mean).abs() > 0.05);
@@ -49,7 +53,7 @@ impl Follower {
             }
             own.iter()
                 .for_each(|&(node, _)| weights[node as usize] = Some(1.0));
-            let weights = harmonic(mesh, &weights);
+            let weights = harmonic(mesh, &weights, |e, slope| slope * mesh.volumes[e]);
             let followers: Vec<Follow> = (0..mesh.nodes.len())
                 .into_par_iter()
                 .filter(|&n| weights[n] > 0.0)
@@ -75,16 +79,11 @@ impl Follower {
         !self.follows.is_empty()
     }
 
-    /// Moves the mesh; `moved` is the displacement of the material at a node, m. Returns the first
-    /// element that has turned over, if any has.
-    pub fn follow(&self, mesh: &mut Mesh, moved: impl Fn(u32) -> Vec3) -> Option<u32> {
+    /// Moves nodes; `moved` is the displacement of the material at a node, m.
+    pub fn shift(&self, nodes: &mut [Vec3], moved: impl Fn(u32) -> Vec3) {
         for follow in &self.follows {
-            mesh.nodes[follow.node as usize] +=
-                follow.motion * moved(follow.source).dot(follow.normal);
+            nodes[follow.node as usize] += follow.motion * moved(follow.source).dot(follow.normal);
         }
-        mesh.update_geometry();
-        let turned = mesh.volumes.par_iter().position_first(|&v| v <= 0.0);
-        turned.map(|element| element as u32)
     }
 }
 
@@ -115,70 +114,6 @@ fn nearest(mesh: &Mesh, surface: &[(u32, Vec3)], node: u32) -> (u32, Vec3) {
         .expect("a surface has nodes")
 }
 
-/// Solves Laplace's equation for the nodes without a given value, by conjugate gradients.
-fn harmonic(mesh: &Mesh, given: &[Option<f64>]) -> Vec<f64> {
-    let mut w: Vec<f64> = given.iter().map(|v| v.unwrap_or(1.0)).collect();
-    if !given.contains(&Some(0.0)) {
-        return w;
-    }
-    let free = |n: usize| given[n].is_none();
-    // Residual −K w on the free nodes, and the diagonal of K as preconditioner.
-    let mut residual: Vec<f64> = stiffness_times(mesh, &w).iter().map(|r| -r).collect();
-    let diagonal = stiffness_diagonal(mesh);
-    let mask = |v: &mut Vec<f64>| (0..v.len()).filter(|&n| !free(n)).for_each(|n| v[n] = 0.0);
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    mask(&mut residual);
-    let mut z: Vec<f64> = residual.iter().zip(&diagonal).map(|(r, d)| r / d).collect();
-    let mut direction = z.clone();
-    let mut rho = dot(&residual, &z);
-    let target = 1e-16 * rho;
-    for _ in 0..10 * mesh.nodes.len() {
-        if rho <= target {
-            break;
-        }
-        let mut image = stiffness_times(mesh, &direction);
-        mask(&mut image);
-        let alpha = rho / dot(&direction, &image);
-        for n in 0..w.len() {
-            w[n] += alpha * direction[n];
-            residual[n] -= alpha * image[n];
-            z[n] = residual[n] / diagonal[n];
-        }
-        let next = dot(&residual, &z);
-        for n in 0..w.len() {
-            direction[n] = z[n] + next / rho * direction[n];
-        }
-        rho = next;
-    }
-    w
-}
-
-fn stiffness_times(mesh: &Mesh, w: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; w.len()];
-    for (e, tet) in mesh.tets.iter().enumerate() {
-        let gradients = mesh.all_gradients(e);
-        let slope: Vec3 = (0..4)
-            .map(|i| gradients[i] * w[tet[i] as usize])
-            .sum::<Vec3>()
-            * mesh.volumes[e];
-        for i in 0..4 {
-            out[tet[i] as usize] += gradients[i].dot(slope);
-        }
-    }
-    out
-}
-
-fn stiffness_diagonal(mesh: &Mesh) -> Vec<f64> {
-    let mut out = vec![0.0; mesh.nodes.len()];
-    for (e, tet) in mesh.tets.iter().enumerate() {
-        for (i, g) in mesh.all_gradients(e).iter().enumerate() {
-            out[tet[i] as usize] += g.length_squared() * mesh.volumes[e];
-        }
-    }
-    // Nodes of no element would divide by zero.
-    out.iter().map(|&d| if d > 0.0 { d } else { 1.0 }).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -196,27 +131,27 @@ mod tests {
                 Mat3::IDENTITY
             }
         };
-        let follower = Follower::new(&mesh, &[&bottom], top_held);
-        let turned = follower.follow(&mut mesh, |_| Vec3::new(0.3, 0.0, -0.1));
-        assert_eq!(turned, None);
+        let follower = Follower::new(&mesh, &[&bottom], top_held, |_| false);
+        follower.shift(&mut mesh.nodes, |_| Vec3::new(0.3, 0.0, -0.1));
+        mesh.update_geometry();
+        assert_eq!(mesh.turned_over(), None);
         for (x, old) in mesh.nodes.iter().zip(&before) {
             let expected = *old - Vec3::Z * 0.1 * (1.0 - old.z / 2.0);
             assert!((*x - expected).length() < 1e-8, "{x} {expected}");
         }
         assert!((mesh.total_volume() - 2.1).abs() < 1e-8);
         // Pushed past the held top, elements turn over, and that is noticed.
-        assert!(follower.follow(&mut mesh, |_| Vec3::Z * 2.5).is_some());
+        follower.shift(&mut mesh.nodes, |_| Vec3::Z * 2.5);
+        mesh.update_geometry();
+        assert!(mesh.turned_over().is_some());
     }
 
     #[test]
     fn a_mesh_that_nothing_holds_goes_along() {
         let mut mesh = box_mesh(Vec3::ONE, [2, 2, 2]).unwrap();
         let bottom = mesh.surfaces[4].faces.clone();
-        let follower = Follower::new(&mesh, &[&bottom], |_| Mat3::IDENTITY);
-        assert_eq!(
-            follower.follow(&mut mesh, |_| Vec3::new(0.0, 0.0, 0.25)),
-            None
-        );
+        let follower = Follower::new(&mesh, &[&bottom], |_| Mat3::IDENTITY, |_| false);
+        follower.shift(&mut mesh.nodes, |_| Vec3::new(0.0, 0.0, 0.25));
         assert_eq!(
             mesh.bounds(),
             [Vec3::new(0.0, 0.0, 0.25), Vec3::new(1.0, 1.0, 1.25)]

@@ -1,6 +1,6 @@
-// A sector of 20 degrees of a torpedo anchor above the seabed: half a meridian plane, revolved.
-// Lengths in m; x is the radius in the plane of the drawing, z up, 0 at the seabed, where the tip is.
-// Mesh with: gmsh anchor.geo -3 -o anchor.msh
+// A torpedo anchor above the seabed: half a meridian plane, which the scene revolves.
+// Lengths in m; x is the radius, z up, 0 at the seabed, where the tip is.
+// Mesh with: gmsh anchor.geo -2 -o anchor.msh
 DefineConstant[ h = 0.075 ]; // size of elements at the tip
 D = 0.30;          // diameter
 long = 10 * D;     // length of the anchor
@@ -8,7 +8,6 @@ DefineConstant[ tip = 1.5 ]; // length of the ellipsoidal tip over D
 near = 2 * D;      // radius of the zone that goes with the anchor, and its depth below the tip
 far = 12 * D;      // radius of the ground
 deep = 25 * D;     // depth of the ground
-angle = 20 * Pi / 180;
 
 R = D / 2;
 t = tip * D;
@@ -70,24 +69,13 @@ Mesh.MeshSizeFromCurvature = 0;
 Mesh.Algorithm = 6;
 General.NumThreads = 1; // the same mesh each time
 
-For k In {1:5}
-  out() = Extrude {{0, 0, 1}, {0, 0, 0}, angle} { Surface{k}; Layers{1}; };
-  new(k) = out(1);
-  other(k) = out(0);
-  If (k == 1)
-    side() = out();
-  EndIf
-EndFor
-Physical Volume("anchor") = {new(1)};
-Physical Volume("near-soil") = {new(2)};
-Physical Volume("near-room") = {new(3)};
-Physical Volume("far-soil") = {new(4)};
-Physical Volume("far-room") = {new(5)};
-Physical Surface("theta-min") = {1:5};
-Physical Surface("theta-max") = {other(1), other(2), other(3), other(4), other(5)};
-e = 1e-4;
-Physical Surface("r-max") = {Surface In BoundingBox{far * Cos(angle) - e, -e, -deep - e, far + e, far, top + e}};
-Physical Surface("bottom") = {Surface In BoundingBox{-e, -e, -deep - e, far + e, far, -deep + e}};
-Physical Surface("tip") = {side(2)};
-Physical Surface("shaft") = {side(3)};
-Physical Surface("head") = {side(4)};
+Physical Surface("anchor") = {1};
+Physical Surface("near-soil") = {2};
+Physical Surface("near-room") = {3};
+Physical Surface("far-soil") = {4};
+Physical Surface("far-room") = {5};
+Physical Curve("tip") = {1};
+Physical Curve("shaft") = {2};
+Physical Curve("head") = {3};
+Physical Curve("bottom") = {21};
+Physical Curve("r-max") = {22, 23};

@@ -104,6 +104,26 @@ pub enum GmshProblem {
     #[error("the file has no tetrahedra; mesh the geometry in 3D: `{command}`")]
     NoTetrahedra { command: String },
     #[error(
+        "the file has no triangles in a physical group; give the surfaces of the meridian physical \
+         groups and mesh it in 2D: `{command}`"
+    )]
+    NoTriangles { command: String },
+    #[error(
+        "the mesh has tetrahedra, but a plane mesh of a meridian is revolved; leave `revolve` out"
+    )]
+    NotPlane,
+    #[error(
+        "node {0} lies in neither of the planes y = 0 and z = 0; draw the meridian in x (the radius) \
+         and z, or in x and y"
+    )]
+    OutOfPlane(u64),
+    #[error("node {0} has a negative radius; draw the meridian on the side x ≥ 0 of the axis")]
+    NegativeRadius(u64),
+    #[error(
+        "a triangle is in two physical surfaces, `{first}` and `{second}`; take it out of one of them"
+    )]
+    TwoAreas { first: String, second: String },
+    #[error(
         "element {element} is in two volume groups, `{first}` and `{second}`; take its volume out \
          of one of the two Physical Volumes"
     )]

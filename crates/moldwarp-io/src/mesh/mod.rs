@@ -10,7 +10,7 @@ pub use error::{GmshProblem, MeshFileError, Place};
 pub use explain::explain_mesh_error;
 pub use quality::describe_quality;
 
-use moldwarp::mesh::RawMesh;
+use moldwarp::mesh::{PlaneMesh, RawMesh};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -42,14 +42,42 @@ pub struct MeshFile {
 /// Whatever keeps the file from being a mesh of tetrahedra, with the line (ASCII) or byte (binary)
 /// and what to do about it.
 pub fn read_gmsh(path: &Path) -> Result<MeshFile, MeshFileError> {
-    let bytes = read_bytes(path).map_err(|source| match source.kind() {
+    parse_gmsh(path, &bytes(path)?)
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
+    read_bytes(path).map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => missing::error(path),
         _ => MeshFileError::Unreadable {
             file: path.to_owned(),
             source,
         },
-    })?;
-    parse_gmsh(path, &bytes)
+    })
+}
+
+/// A plane mesh as read, with the numbers its file gave to nodes.
+#[derive(Debug)]
+pub struct PlaneFile {
+    /// Coordinates are the file's own, in whatever unit it was drawn.
+    pub plane: PlaneMesh,
+    /// The file's tag of each node.
+    pub node_tags: Vec<u64>,
+    /// What a user should know, e.g. unused nodes that were dropped.
+    pub notes: Vec<String>,
+}
+
+/// Reads the plane mesh of a meridian from a Gmsh file, in x and z (y = 0) or in x and y (z = 0); x
+/// is the radius.
+///
+/// Areas are the physical groups of 3-node triangles, lines those of 2-node lines, in the order of
+/// their tags; triangles in no group are left out.
+///
+/// # Errors
+///
+/// Whatever keeps the file from being such a mesh, with the line (ASCII) or byte (binary) and what to
+/// do about it.
+pub fn read_plane_gmsh(path: &Path) -> Result<PlaneFile, MeshFileError> {
+    gmsh::parse_plane(path, &bytes(path)?)
 }
 
 /// Reads a Gmsh file from memory; `file` is its name in messages.

@@ -4,9 +4,9 @@ use super::amount::Spanned;
 use super::cylinder::cylinder;
 use super::error::Fault;
 use super::quantity::{self, Dimension};
-use super::raw::{RawBox, RawMesh, Text};
-use super::values::{exactly_one, span, three, vector};
-use crate::mesh::{MeshFileError, explain_mesh_error, read_gmsh};
+use super::raw::{RawBox, RawMesh, RawRevolve, Text};
+use super::values::{exactly_one, positive, span, three, vector};
+use crate::mesh::{MeshFileError, explain_mesh_error, read_gmsh, read_plane_gmsh};
 use moldwarp::Mesh;
 use moldwarp::mesh::box_mesh;
 use std::path::Path;
@@ -31,8 +31,19 @@ pub(super) fn mesh(
             ("cylinder", span(&raw.cylinder)),
         ],
     )?;
+    if let (None, Some(revolve)) = (&raw.file, &raw.revolve) {
+        return Err(Fault::new("`revolve` is for mesh files")
+            .at(revolve.span(), "there is no `file`")
+            .help("name the plane mesh of the meridian: file = \"meridian.msh\""));
+    }
     match (&raw.file, &raw.unit) {
-        (Some(file), unit) => return from_file(file, unit.as_ref(), folder, notes),
+        (Some(file), unit) => {
+            let scale = unit.as_ref().map_or(Ok(1.0), length_unit)?;
+            return match &raw.revolve {
+                Some(revolve) => revolved(file, scale, revolve, folder, notes),
+                None => from_file(file, scale, folder, notes),
+            };
+        }
         (None, Some(unit)) => {
             return Err(Fault::new("`unit` is for mesh files")
                 .at(unit.span(), "a generated mesh does not need it")
@@ -72,14 +83,10 @@ fn generated(cuboid: &Spanned<RawBox>) -> Result<Mesh, Fault> {
 
 fn from_file(
     file: &Text,
-    unit: Option<&Text>,
+    scale: f64,
     folder: &Path,
     notes: &mut Vec<String>,
 ) -> Result<(Mesh, Vec<u64>), Fault> {
-    let scale = match unit {
-        Some(unit) => length_unit(unit)?,
-        None => 1.0,
-    };
     let path = folder.join(file.get_ref());
     let mut read = read_gmsh(&path).map_err(|e| unreadable(e, file, &path))?;
     for x in &mut read.raw.nodes {
@@ -91,6 +98,61 @@ fn from_file(
         damaged(&format!("{}: {message}", path.display()), file.span())
     })?;
     Ok((mesh, read.element_tags))
+}
+
+/// Groups that a revolved mesh has of itself.
+const SIDES: [&str; 2] = ["theta-min", "theta-max"];
+
+/// A sector from the plane mesh of its meridian. Elements have no tags of their own.
+fn revolved(
+    file: &Text,
+    scale: f64,
+    revolve: &Spanned<RawRevolve>,
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<(Mesh, Vec<u64>), Fault> {
+    let raw = revolve.get_ref();
+    let cells = match &raw.cells {
+        Some(cells) => super::values::count("cells", cells, 1)?,
+        None => 1,
+    };
+    let angle = positive("angle", &raw.angle, Dimension::Angle)?;
+    if angle > std::f64::consts::PI || angle / cells as f64 >= std::f64::consts::FRAC_PI_2 {
+        return Err(Fault::new(
+            "a mesh is revolved by at most 180°, and less than 90° for each cell",
+        )
+        .at(raw.angle.span(), "too much")
+        .help("20 deg in one cell is usual; more `cells` allow for more"));
+    }
+    let path = folder.join(file.get_ref());
+    let mut read = read_plane_gmsh(&path).map_err(|e| unreadable(e, file, &path))?;
+    notes.append(&mut read.notes);
+    read.plane
+        .nodes
+        .iter_mut()
+        .flatten()
+        .for_each(|x| *x *= scale);
+    let taken = read.plane.lines.iter().find(|l| SIDES.contains(&&l.0[..]));
+    if let Some((name, _)) = taken {
+        return Err(Fault::new(format!("a physical curve of the mesh is called `{name}`"))
+            .at(file.span(), "this mesh")
+            .help("a revolved mesh has the surfaces `theta-min` and `theta-max` of itself: rename the curve"));
+    }
+    let elements = (read.plane.triangles.len() as u64).saturating_mul(cells);
+    if elements > MOST_CELLS {
+        return Err(Fault::new("the revolved mesh has too many cells")
+            .at(revolve.span(), format!("more than {MOST_CELLS}"))
+            .help("take fewer around, or a coarser meridian"));
+    }
+    let revolved = read.plane.revolve(angle, cells as usize);
+    let origin = |&n: &u32| read.node_tags[n as usize];
+    let node_tags: Vec<u64> = revolved.node_origins.iter().map(origin).collect();
+    let element_tags: Vec<u64> = (1..=revolved.raw.tets.len() as u64).collect();
+    let mesh = Mesh::new(revolved.raw).map_err(|e| {
+        let message = explain_mesh_error(&e, &node_tags, &element_tags);
+        damaged(&format!("{}: {message}", path.display()), file.span())
+    })?;
+    Ok((mesh, Vec::new()))
 }
 
 fn length_unit(unit: &Text) -> Result<f64, Fault> {

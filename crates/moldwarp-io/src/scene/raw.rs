@@ -102,9 +102,23 @@ pub(super) struct RawMesh {
     /// type: text: m, cm or mm
     /// default: m
     pub unit: Option<Text>,
+    pub revolve: Option<Spanned<RawRevolve>>,
     #[serde(rename = "box")]
     pub cuboid: Option<Spanned<RawBox>>,
     pub cylinder: Option<Spanned<RawCylinder>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawRevolve {
+    /// Revolves a plane mesh of triangles, the file's, by this angle about the axis z; see
+    /// [meridians](#meridians). Less than 90° for each cell around.
+    /// type: angle, 0 < α ≤ 180°
+    pub angle: RawAmount,
+    /// Layers of elements around.
+    /// type: whole number ≥ 1
+    /// default: 1
+    pub cells: Option<Spanned<i64>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -10,6 +10,7 @@ mod geometry;
 mod locate;
 mod motion;
 mod quality;
+mod revolve;
 mod topology;
 mod walls;
 
@@ -18,6 +19,7 @@ pub use generate::box_mesh;
 pub use geometry::{barycentric, tetrahedron_gradients};
 pub use motion::{Driven, Follower, MotionError, Zones};
 pub use quality::Quality;
+pub use revolve::{PlaneMesh, Revolved};
 pub use walls::Walls;
 
 use crate::Vec3;

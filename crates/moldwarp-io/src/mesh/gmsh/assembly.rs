@@ -1,10 +1,10 @@
 //! Nodes, elements and groups as they come out of a file, put together to a mesh.
 
-use super::super::{GmshProblem, MeshFile};
+use super::super::{GmshProblem, MeshFile, PlaneFile};
 use super::Result;
 use super::cursor::Cursor;
 use moldwarp::Vec3;
-use moldwarp::mesh::RawMesh;
+use moldwarp::mesh::{PlaneMesh, RawMesh};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -19,6 +19,7 @@ pub(super) struct Assembly {
     /// The physical group of each tetrahedron.
     tet_groups: Vec<Option<u64>>,
     triangles: BTreeMap<u64, Triangles>,
+    lines: BTreeMap<u64, Vec<[u32; 2]>>,
     names: BTreeMap<(i64, u64), String>,
 }
 
@@ -81,6 +82,12 @@ impl Assembly {
             if triangles.sorted.insert(key) {
                 triangles.list.push(nodes);
             }
+        }
+    }
+
+    pub(super) fn add_line(&mut self, nodes: [u32; 2], groups: &[u64]) {
+        for &group in groups {
+            self.lines.entry(group).or_default().push(nodes);
         }
     }
 
@@ -147,6 +154,68 @@ impl Assembly {
             element_tags: self.element_tags,
             notes,
         })
+    }
+
+    /// The plane mesh of a meridian; `command` is what makes one in two dimensions.
+    pub(super) fn finish_plane(
+        mut self,
+        command: String,
+    ) -> std::result::Result<PlaneFile, GmshProblem> {
+        if !self.tets.is_empty() {
+            return Err(GmshProblem::NotPlane);
+        }
+        if self.triangles.is_empty() {
+            return Err(GmshProblem::NoTriangles { command });
+        }
+        self.check_names(2, "surface", self.triangles.keys())?;
+        self.check_names(1, "curve", self.lines.keys())?;
+        let mut notes = Vec::new();
+        self.drop_unused_nodes(&mut notes);
+        let nodes = self.in_the_plane()?;
+        let (mut triangles, mut areas) = (Vec::new(), Vec::new());
+        let mut seen: HashMap<[u32; 3], u64> = HashMap::new();
+        for (&group, own) in &self.triangles {
+            let first = triangles.len() as u32;
+            for &triangle in &own.list {
+                let mut key = triangle;
+                key.sort_unstable();
+                if let Some(other) = seen.insert(key, group) {
+                    let [first, second] = [other, group].map(|g| self.group_name(2, g));
+                    return Err(GmshProblem::TwoAreas { first, second });
+                }
+                triangles.push(triangle);
+            }
+            let own = (first..triangles.len() as u32).collect();
+            areas.push((self.group_name(2, group), own));
+        }
+        let lines = self.lines.iter();
+        let lines = lines.map(|(&g, lines)| (self.group_name(1, g), lines.clone()));
+        Ok(PlaneFile {
+            plane: PlaneMesh {
+                nodes,
+                triangles,
+                areas,
+                lines: lines.collect(),
+            },
+            node_tags: self.node_tags,
+            notes,
+        })
+    }
+
+    /// Radius and height of the nodes: x and z in the plane y = 0, or x and y in the plane z = 0.
+    fn in_the_plane(&self) -> std::result::Result<Vec<[f64; 2]>, GmshProblem> {
+        let size = self.nodes.iter().map(|x| x.abs().max_element());
+        let tolerance = 1e-9 * size.fold(0.0, f64::max);
+        let flat = |d: usize| self.nodes.iter().position(|x| x[d].abs() > tolerance);
+        let height = match (flat(1), flat(2)) {
+            (None, _) => 2,
+            (_, None) => 1,
+            (Some(n), _) => return Err(GmshProblem::OutOfPlane(self.node_tags[n])),
+        };
+        if let Some(n) = self.nodes.iter().position(|x| x.x < -tolerance) {
+            return Err(GmshProblem::NegativeRadius(self.node_tags[n]));
+        }
+        Ok(self.nodes.iter().map(|x| [x.x, x[height]]).collect())
     }
 
     /// A named group without elements is left out, since nothing could be done with it.
@@ -236,13 +305,21 @@ impl Assembly {
         for &n in self.tets.iter().flatten().chain(groups.flatten()) {
             used[n as usize] = true;
         }
+        if self.tets.is_empty() {
+            let lines = self.lines.values().flatten().flatten();
+            lines.for_each(|&n| used[n as usize] = true);
+        }
         let dropped = used.iter().filter(|&&u| !u).count();
         if dropped == 0 {
             return;
         }
+        let element = match self.tets.is_empty() {
+            true => "triangle",
+            false => "tetrahedron",
+        };
         notes.push(match dropped {
-            1 => "1 node belongs to no tetrahedron and was dropped".to_owned(),
-            n => format!("{n} nodes belong to no tetrahedron and were dropped"),
+            1 => format!("1 node belongs to no {element} and was dropped"),
+            n => format!("{n} nodes belong to no {element} and were dropped"),
         });
         let mut renumbered = vec![0; used.len()];
         let kept = renumbered.iter_mut().zip(&used).filter(|(_, used)| **used);
@@ -254,7 +331,9 @@ impl Assembly {
         let mut keep = used.iter();
         self.node_tags.retain(|_| keep.next() == Some(&true));
         let lists = self.triangles.values_mut().flat_map(|t| &mut t.list);
-        for n in self.tets.iter_mut().flatten().chain(lists.flatten()) {
+        let lines = self.lines.values_mut().flatten().flatten();
+        let all = self.tets.iter_mut().flatten().chain(lists.flatten());
+        for n in all.chain(lines) {
             *n = renumbered[*n as usize];
         }
     }

@@ -7,8 +7,10 @@ use super::{Result, first_order_command, mesh_command};
 /// An element that a mesh file may have.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum ElementType {
-    /// A point or a line of any order, of no use here.
+    /// A point, or a line of higher order, of no use here.
     Ignored { nodes: usize },
+    /// Two nodes.
+    Line,
     /// Three nodes.
     Triangle,
     /// Four nodes.
@@ -38,7 +40,7 @@ impl ElementType {
         match kind {
             2 => Ok(ElementType::Triangle),
             4 => Ok(ElementType::Tetrahedron),
-            1 => ignored(2),
+            1 => Ok(ElementType::Line),
             8 => ignored(3),
             15 | 84 => ignored(1),
             26..=28 => ignored(kind as usize - 22),
@@ -58,6 +60,7 @@ impl ElementType {
     pub(super) fn nodes(self) -> usize {
         match self {
             ElementType::Ignored { nodes } => nodes,
+            ElementType::Line => 2,
             ElementType::Triangle => 3,
             ElementType::Tetrahedron => 4,
         }

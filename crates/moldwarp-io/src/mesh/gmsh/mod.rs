@@ -11,7 +11,7 @@ mod fields;
 mod v22;
 mod v41;
 
-use super::{GmshProblem, MeshFile, MeshFileError};
+use super::{GmshProblem, MeshFile, MeshFileError, PlaneFile};
 use assembly::Assembly;
 use cursor::Cursor;
 use std::path::Path;
@@ -26,6 +26,19 @@ enum Version {
 
 /// Reads the bytes of the file `path`.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
+    read(path, bytes)?
+        .finish(mesh_command(path))
+        .map_err(|problem| whole(path, problem))
+}
+
+/// Reads the bytes of the file `path`, a plane mesh.
+pub(super) fn parse_plane(path: &Path, bytes: &[u8]) -> Result<PlaneFile> {
+    read(path, bytes)?
+        .finish_plane(command(path, "-2"))
+        .map_err(|problem| whole(path, problem))
+}
+
+fn read(path: &Path, bytes: &[u8]) -> Result<Assembly> {
     let mut cursor = Cursor::new(path, bytes);
     let version = header(&mut cursor)?;
     let mut assembly = Assembly::default();
@@ -72,9 +85,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
         let command = mesh_command(path);
         return Err(whole(path, GmshProblem::NoSection { name, command }));
     }
-    assembly
-        .finish(mesh_command(path))
-        .map_err(|problem| whole(path, problem))
+    Ok(assembly)
 }
 
 fn whole(path: &Path, problem: GmshProblem) -> MeshFileError {

@@ -88,6 +88,11 @@ fn element(
     }
     match kind {
         ElementType::Ignored { nodes } => cursor.skip(nodes as u64, 4, "the nodes of an element"),
+        ElementType::Line => {
+            let nodes = node_numbers(cursor, assembly, tag)?;
+            assembly.add_line(nodes, group.as_slice());
+            Ok(())
+        }
         ElementType::Triangle => {
             let nodes = node_numbers(cursor, assembly, tag)?;
             assembly.add_triangle(nodes, group.as_slice());

@@ -9,7 +9,7 @@ use super::element_type::ElementType;
 use moldwarp::Vec3;
 use std::collections::HashMap;
 
-/// Tags of the physical groups of each surface and volume, by dimension and tag.
+/// Tags of the physical groups of each curve, surface and volume, by dimension and tag.
 pub(super) type EntityGroups = HashMap<(i64, i64), Vec<u64>>;
 
 /// `$Entities`: how many points, curves, surfaces and volumes, then each with its place, its
@@ -38,7 +38,7 @@ pub(super) fn entities(cursor: &mut Cursor) -> Result<EntityGroups> {
                 cursor.skip(bounds, 4, "the bounds of an entity")?;
             }
             cursor.end_record()?;
-            if dimension >= 2 && !physical.is_empty() {
+            if dimension >= 1 && !physical.is_empty() {
                 groups.insert((dimension as i64, tag), physical);
             }
         }
@@ -179,6 +179,10 @@ fn element(
     match kind {
         ElementType::Ignored { nodes } => {
             cursor.skip(nodes as u64, 8, "the nodes of an element")?;
+        }
+        ElementType::Line => {
+            let nodes = node_numbers(cursor, assembly, tag)?;
+            assembly.add_line(nodes, groups);
         }
         ElementType::Triangle => {
             let nodes = node_numbers(cursor, assembly, tag)?;

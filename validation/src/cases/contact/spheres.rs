@@ -64,17 +64,6 @@ impl Scene {
         plan.bodies = vec![sphere("left", -1.0), sphere("right", 1.0)];
         plan.contacts = vec![contact([0, 1], self.friction, ContactSurface::Free)];
         let speed = Vec3::new(SPEED, 0.0, 0.0);
-        let env = |n: &str, d: f64| {
-            std::env::var(n)
-                .ok()
-                .and_then(|v| v.parse().ok())
-                .unwrap_or(d)
-        };
-        plan.numerics.viscosity = env("VV", 0.0);
-        plan.numerics.courant = env("COUR", 0.5);
-        if env("SM", 1.0) == 0.0 {
-            plan.numerics.smoothing = Smoothing::Off
-        }
         plan.numerics.smoothing = smoothing;
         plan.stages[0].initial_velocities = vec![(0, speed), (1, -speed)];
         plan

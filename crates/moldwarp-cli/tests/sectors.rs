@@ -117,3 +117,62 @@ fn the_part_itself_is_the_same_without_the_symmetry() {
     let displacement = "base.displacement.x";
     assert_eq!(last(&of_part, displacement), last(&of_whole, displacement));
 }
+
+/// The column in two parts with a contact between them: its forces are those on the whole body, numbers
+/// of nodes those of the part.
+#[test]
+fn forces_of_contacts_are_those_of_the_whole_body() {
+    let symmetry = "[symmetry]\nkind = \"sector\"\naxis = \"z\"\nangle = \"20 deg\"\n";
+    let half = "[symmetry]\nkind = \"half\"\naxis = \"y\"\n";
+    let bodies = r#"[bodies.lower]
+region = { min = ["0 m", "-1 m", "0 m"], max = ["1 m", "1 m", "0.5 m"] }
+material = "soil"
+
+[bodies.upper]
+region = { min = ["0 m", "-1 m", "0.5 m"], max = ["1 m", "1 m", "1 m"] }
+material = "soil"
+
+[[contacts]]
+name = "joint"
+bodies = ["upper", "lower"]
+friction = 0.3
+surface = "aligned"
+
+[[boundaries]]"#;
+    let (before, after) = SECTOR.split_once("[bodies.column]").unwrap();
+    let (_, after) = after.split_once("[[boundaries]]").unwrap();
+    let scene = format!("{before}{bodies}{after}")
+        .replace(
+            "force = [0, 0, \"-2 kN\"]",
+            "body = \"upper\"\npressure = \"1 kPa\"",
+        )
+        .replace("0.4 s", "0.02 s");
+    let run = |scene: &str| {
+        let bench = Bench::with(scene);
+        bench.done(&["run", "column"]);
+        csv::read(&bench.path("out/column/history.csv")).unwrap()
+    };
+    let last = |table: &csv::Table, what: &str| {
+        let column = table.column(&format!("contact.joint.{what}"));
+        *column.unwrap().last().unwrap()
+    };
+    let part = run(&scene.replace(symmetry, ""));
+    assert!(last(&part, "normal.z") > 0.0);
+    let sector = (20f64.to_radians()).sin() / std::f64::consts::TAU;
+    for (kind, share, x) in [(symmetry, sector, 0.0), (half, 0.5, 2.0)] {
+        let whole = run(&scene.replace(symmetry, kind));
+        let same = |name: &str, factor: f64| {
+            let [part, whole] = [&part, &whole].map(|table| last(table, name));
+            let difference = (part * factor - whole).abs();
+            assert!(difference <= 1e-12 * whole.abs(), "{name}: {part} {whole}");
+        };
+        for force in ["normal", "tangential"] {
+            same(&format!("{force}.x"), x);
+            same(&format!("{force}.y"), 0.0);
+            same(&format!("{force}.z"), 1.0 / share);
+        }
+        for number in ["sticking", "sliding", "open"] {
+            same(number, 1.0);
+        }
+    }
+}

@@ -156,6 +156,41 @@ fn a_block_slides_as_coulomb_says() {
     }
 }
 
+/// A block that slides on a smooth incline is held back by c_a A, whether contact looks at the gap or not,
+/// though it quivers; the books close.
+#[test]
+fn a_sliding_block_adheres_with_its_whole_sole() {
+    for (surface, gap_check) in [
+        (ContactSurface::Aligned, true),
+        (ContactSurface::Free, true),
+        (ContactSurface::Free, false),
+    ] {
+        let adhesion = 800.0;
+        let mut plan = incline(
+            0.1,
+            Contact {
+                adhesion,
+                gap_check,
+                ..contact(0.0, surface)
+            },
+        );
+        plan.stages[1].until = Until::Duration(0.4);
+        let mut sim = Simulation::new(plan).unwrap();
+        let (mut held, mut steps) = (0.0, 0.0);
+        while !sim.finished() {
+            sim.step().unwrap();
+            if sim.stage() == 1 && sim.stage_time() > 0.05 {
+                held += sim.contact_tallies()[0].tangential.x;
+                steps += 1.0;
+            }
+        }
+        let ratio = held / steps / (adhesion * LENGTH * 0.2);
+        println!("{surface:?}, gap check {gap_check}: {ratio:.4} c A");
+        assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+        assert!(sim.energies().residual.abs() < 1e-12 * sim.energy_turned_over());
+    }
+}
+
 /// A rigid block slides as an elastic one does, and no stress is in it.
 #[test]
 fn a_rigid_block_slides_as_coulomb_says() {

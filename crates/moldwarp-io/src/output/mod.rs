@@ -11,7 +11,7 @@ pub mod vtu_read;
 
 pub use folder::{Folder, FolderError};
 pub use hash::Hasher;
-pub use summary::Summary;
+pub use summary::{Projected, Summary};
 
 use std::io;
 use std::path::{Path, PathBuf};

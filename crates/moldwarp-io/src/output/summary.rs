@@ -41,6 +41,8 @@ pub struct Summary {
     pub energy: Vec<(String, f64)>,
     /// The greatest half sum of the absolute physical terms, J: what to relate the others to.
     pub energy_turned_over: f64,
+    /// What was put back onto its side of a face of an aligned contact.
+    pub projections: Projected,
     /// The comparisons that the scene asked for and that could be made.
     pub compare: Vec<Compared>,
     /// Number of threads at work; the results do not depend on them.
@@ -56,6 +58,17 @@ pub struct Summary {
     /// Each column of the history with its unit.
     #[serde(serialize_with = "in_order")]
     pub units: Vec<(String, String)>,
+}
+
+/// Particles that were put back onto their side of a face.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Projected {
+    /// How often; a particle counts each time. Of the part that is computed.
+    pub count: u64,
+    /// Sum of the distances, m.
+    pub sum: f64,
+    /// The greatest distance, m.
+    pub greatest: f64,
 }
 
 /// A history against its reference.
@@ -119,6 +132,11 @@ mod tests {
             max_dt: None,
             energy: vec![("kinetic".into(), 1.0), ("elastic".into(), f64::NAN)],
             energy_turned_over: 2.0,
+            projections: Projected {
+                count: 3,
+                sum: 0.5,
+                greatest: 0.25,
+            },
             compare: Vec::new(),
             threads: 2,
             version: "0.1.0".into(),

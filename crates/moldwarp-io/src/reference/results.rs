@@ -152,10 +152,12 @@ fn summary() -> String {
     let mut rows = Vec::new();
     for field in struct_named(SUMMARY, "Summary") {
         rows.push([code([&field.name], ""), said(&field)]);
-        if field.types.iter().any(|t| t == "Compared") {
-            for part in struct_named(SUMMARY, "Compared") {
-                let path = format!("{}[].{}", field.name, part.name);
-                rows.push([code([path], ""), said(&part)]);
+        for (kind, below) in [("Compared", "[]"), ("Projected", "")] {
+            if field.types.iter().any(|t| t == kind) {
+                for part in struct_named(SUMMARY, kind) {
+                    let path = format!("{}{below}.{}", field.name, part.name);
+                    rows.push([code([path], ""), said(&part)]);
+                }
             }
         }
     }

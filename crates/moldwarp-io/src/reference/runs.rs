@@ -98,7 +98,9 @@ fn summary_keys(out: &Path) -> Vec<String> {
         value.as_object().unwrap().keys().cloned().collect()
     };
     let compared = keys(&summary["compare"][0]).into_iter();
+    let projected = keys(&summary["projections"]).into_iter();
     let mut all = keys(&summary);
+    all.extend(projected.map(|key| format!("projections.{key}")));
     all.extend(compared.map(|key| format!("compare[].{key}")));
     all
 }

@@ -23,7 +23,7 @@ pub(crate) use whole::factor as whole_factor;
 use crate::mesh::describe_quality;
 use crate::output::csv::CsvError;
 use crate::output::hash::scene_hash;
-use crate::output::{FileError, Folder, FolderError, Summary, write_whole};
+use crate::output::{FileError, Folder, FolderError, Projected, Summary, write_whole};
 use crate::scene::{Origin, Scene, SceneError};
 use log::Log;
 use moldwarp::measure::Energies;
@@ -237,6 +237,7 @@ pub(crate) fn simulation(
 /// The part of the summary that the simulation and its pace tell.
 fn computed(sim: &Simulation, pace: &Pace) -> Summary {
     let names = Energies::NAMES.map(str::to_owned).into_iter();
+    let projections = sim.projections();
     Summary {
         particles: sim.particles().len(),
         elements: sim.mesh().tets.len(),
@@ -248,6 +249,11 @@ fn computed(sim: &Simulation, pace: &Pace) -> Summary {
         max_dt: pace.bounds.map(|b| b[1]),
         energy: names.zip(whole::energies(sim).values()).collect(),
         energy_turned_over: whole::energy_turned_over(sim),
+        projections: Projected {
+            count: projections.count,
+            sum: projections.sum,
+            greatest: projections.greatest,
+        },
         state_hash: state_hash(sim),
         ..Summary::default()
     }

@@ -7,7 +7,9 @@
 //!   J_n = m (r − gap/Δt) ≥ 0,   m = m_a m_b / (m_a + m_b),
 //!   |J_t| = min(m |Δv_t|, μ J_n + c_a A h),
 //!
-//! on b, and against it on a. The reduced mass m is small where one of the bodies hardly supports the
+//! on b, and against it on a. J_t is 0 where J_n is and the gap is open; surfaces that still touch adhere
+//! though nothing presses them together: what slides quivers, and would lose its adhesion each time that
+//! it is not pressed for an instant. The reduced mass m is small where one of the bodies hardly supports the
 //! node, so the impulses are bounded there though accelerations F/m are not. Where faces of the
 //! structure meet at an edge or corner, each has its own normal, and all are satisfied.
 
@@ -41,6 +43,8 @@ pub struct Meeting {
     pub allowed: [f64; NORMALS],
     /// Part of the bodies' common surface, m².
     pub area: f64,
+    /// Whether the gap is so small that adhesion works though nothing presses the bodies together.
+    pub touching: bool,
     pub state: State,
     /// Impulses on b in the kick, N s.
     normal: [f64; NORMALS],
@@ -110,7 +114,8 @@ impl Meeting {
             relative = give(n * change);
         }
         let pressed: f64 = self.normal.iter().sum();
-        if pressed == 0.0 {
+        let adheres = self.touching && strength.adhesion > 0.0;
+        if pressed == 0.0 && !adheres {
             self.state = State::Open;
             let undo = -self.tangential;
             self.tangential = Vec3::ZERO;
@@ -164,8 +169,8 @@ impl Meeting {
     }
 
     /// Corrects the velocities that move the nodes, in the state of the kick: what has stuck moves
-    /// together, what slides does so along the normals, what is open is left alone. What was pressed
-    /// together in the kick does not part in the drift that follows either: were only approach stopped,
+    /// together, what slides does so along the normals, what is open is left alone, and what adheres without
+    /// pressure is free along the normals. What was pressed together in the kick does not part in the drift that follows either: were only approach stopped,
     /// forces would do work on every accidental departure and take none back, and bodies that rest on
     /// each other would shake more and more.
     fn move_together(&self, a: &mut Mass, b: &mut Mass, free: &Mat3) {
@@ -262,17 +267,19 @@ mod tests {
     }
 
     fn pair(friction: f64, v: Vec3) -> (Meeting, [Mass; 2]) {
+        let adhesion = 0.0;
+        adhering(Strength { friction, adhesion }, false, v)
+    }
+
+    fn adhering(strength: Strength, touching: bool, v: Vec3) -> (Meeting, [Mass; 2]) {
         let mut meeting = Meeting {
             contact: Some(0),
             count: 1,
+            touching,
             ..Meeting::default()
         };
         meeting.normals[0] = Vec3::Z;
         let mut masses = two(v);
-        let strength = Strength {
-            friction,
-            adhesion: 0.0,
-        };
         let mut one = [meeting];
         solve(
             &mut one,
@@ -303,6 +310,34 @@ mod tests {
             (meeting.state, a.velocity),
             (State::Open, Vec3::new(1.0, 0.0, -0.1))
         );
+    }
+
+    /// Bodies that part adhere while they touch: 0.6 N s at most along the surface, nothing along the
+    /// normal, and the remap leaves them free to part. Apart they do not, and neither do they without
+    /// adhesion.
+    #[test]
+    fn what_touches_adheres_without_pressure() {
+        let v = Vec3::new(1.0, 0.0, -0.1);
+        let strength = |adhesion| Strength {
+            friction: 0.5,
+            adhesion,
+        };
+        let (meeting, [a, b]) = adhering(strength(0.6), true, v);
+        assert_eq!(meeting.state, State::Sliding);
+        assert_eq!(meeting.normal_force, Vec3::ZERO);
+        assert!((meeting.friction - Vec3::X * 6.0).length() < 1e-12);
+        assert!((2.0 * a.velocity + 3.0 * b.velocity - 2.0 * v).length() < 1e-15);
+        let (meeting, [a, b]) = adhering(strength(10.0), true, v);
+        assert_eq!(meeting.state, State::Sticking);
+        assert!((a.velocity - b.velocity + Vec3::Z * 0.1).length() < 1e-15);
+        let mut masses = two(v);
+        move_together(&[meeting], |_| [0, 1], &mut masses, &Mat3::IDENTITY);
+        assert!((masses[0].velocity - masses[1].velocity + Vec3::Z * 0.1).length() < 1e-15);
+        for (adhesion, touching) in [(10.0, false), (0.0, true)] {
+            let (meeting, [a, b]) = adhering(strength(adhesion), touching, v);
+            assert_eq!((meeting.state, meeting.friction), (State::Open, Vec3::ZERO));
+            assert_eq!((a.velocity, b.velocity), (v, Vec3::ZERO));
+        }
     }
 
     /// In a corner both faces are satisfied, and what slides goes along the edge.

@@ -278,25 +278,28 @@ impl Contacts {
     }
 
     /// Normals of the faces of an aligned structure at a node, out of it, and the part of their area
-    /// that belongs to the node and has material of another body behind it, m². Only such faces count,
-    /// unless there is none; those that differ by less than 20° are one.
+    /// that belongs to the node and is covered by another body, m². `covered` says how much of an element
+    /// that body fills, and nothing if it is not there; only faces with such elements behind them count,
+    /// unless there is none. Those that differ by less than 20° are one.
     pub fn face_normals(
         &self,
         mesh: &Mesh,
         contact: u32,
         node: u32,
-        touched: impl Fn(u32) -> bool,
+        covered: impl Fn(u32) -> Option<f64>,
     ) -> ([Vec3; NORMALS], usize, f64) {
         let mut sums = [Vec3::ZERO; NORMALS];
         let (mut count, mut area) = (0, 0.0);
         let faces = || depth::at(&self.faces[contact as usize], node);
-        let behind = |face: Face| mesh.across(face).is_some_and(|f| touched(f.element));
-        let any = faces().any(behind);
-        for face in faces().filter(|&f| !any || behind(f)) {
-            let own = mesh.face_area(face);
-            if any {
-                area += own.length() / 3.0;
+        let behind = |face: Face| covered(mesh.across(face)?.element);
+        let any = faces().any(|f| behind(f).is_some());
+        for face in faces() {
+            let part = behind(face);
+            if any && part.is_none() {
+                continue;
             }
+            let own = mesh.face_area(face);
+            area += part.unwrap_or(0.0) * own.length() / 3.0;
             let alike = |sum: &Vec3| sum.normalize().dot(own.normalize()) > SMOOTH_COSINE;
             match sums[..count].iter().position(alike) {
                 Some(k) => sums[k] += own,

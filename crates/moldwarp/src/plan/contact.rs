@@ -8,7 +8,7 @@ pub struct Contact {
     pub bodies: [Vec<usize>; 2],
     /// Coefficient of friction.
     pub friction: f64,
-    /// Adhesion, Pa.
+    /// What is held along touching surfaces without any pressure, Pa; nothing is held along the normal.
     pub adhesion: f64,
     pub surface: ContactSurface,
     /// Whether bodies may approach as long as there is a gap between them; otherwise they may not

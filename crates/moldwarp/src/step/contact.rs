@@ -2,6 +2,7 @@
 //! Eq. 10–14; the impulses are in `contact/meeting.rs`).
 
 use super::nodes::signs;
+use super::to_nodes::is_filled;
 use super::{Active, Node};
 use crate::boundary::Constraints;
 use crate::contact::{
@@ -15,6 +16,10 @@ use crate::{Mat3, Vec3};
 
 /// A normal of which less than this is left in the free directions of a node is none.
 const LEAST_NORMAL: f64 = 0.1;
+/// Bodies touch where the gap is less than this part of the shortest altitude of the elements there.
+/// The gap is found from depths of the start, so it is known to the strain of about half an element:
+/// this allows for one of some per cent. What quivers on a surface leaves it by much less.
+const TOUCHING: f64 = 0.05;
 
 /// Most sweeps over all meetings where a rigid body ties them together.
 const SWEEPS: usize = 200;
@@ -248,10 +253,15 @@ fn met(sim: &Simulation, contacts: &Contacts, mut meeting: Meeting, drift: f64) 
         ContactSurface::Aligned => face_normals(sim, contacts, &meeting, number),
         ContactSurface::Free => None,
     };
-    meeting.count = 0;
+    (meeting.count, meeting.area, meeting.touching) = (0, 0.0, false);
+    let near = match contact.adhesion {
+        0.0 => f64::NEG_INFINITY,
+        _ => touching_gap(sim, &meeting),
+    };
     let mut add = |n: Vec3, gap: f64| {
         let k = meeting.count;
         meeting.normals[k] = n;
+        meeting.touching |= gap <= near;
         let gap = if contact.gap_check { gap } else { 0.0 };
         meeting.allowed[k] = gap.max(0.0) / drift;
         meeting.count += 1;
@@ -274,8 +284,9 @@ fn met(sim: &Simulation, contacts: &Contacts, mut meeting: Meeting, drift: f64) 
         if n != Vec3::ZERO {
             let (n, gap) = separate(a, b, n, &free);
             add(n, gap);
-            let [a, b] = gradients.map(|g| g.dot(n).abs());
-            meeting.area = a.min(b);
+            // Both point out of their bodies.
+            let [a, b] = gradients.map(|g| g.dot(n));
+            meeting.area = a.min(-b).max(0.0);
         }
     }
     meeting
@@ -293,9 +304,9 @@ fn face_normals(
     let [a, b] = meeting.slots.map(|s| s as usize);
     let first = contacts.is_first(number, active.field(a));
     let other = active.field(if first { b } else { a });
-    let touched = |e: u32| active.cell(e as usize, other).is_some();
+    let covered = |e: u32| active.cell(e as usize, other).map(|c| fill(sim, c));
     let mesh = &sim.plan.mesh;
-    let (mut normals, count, area) = contacts.face_normals(mesh, number, active.nodes[a], touched);
+    let (mut normals, count, area) = contacts.face_normals(mesh, number, active.nodes[a], covered);
     if !first {
         normals = normals.map(|n| -n);
     }
@@ -313,6 +324,28 @@ fn volume_gradient(sim: &Simulation, slot: usize) -> Vec3 {
         own * sums[c].volume
     };
     active.attached(slot).iter().map(gradient).sum()
+}
+
+/// Part of a cell's element that its field fills. What counts as filled is full: particles come into an
+/// element and leave it one by one, and the faces under the middle of a body are covered all the same.
+fn fill(sim: &Simulation, c: usize) -> f64 {
+    let (active, mesh) = (&sim.active, &sim.plan.mesh);
+    if is_filled(&active.cell_nodes[c], &sim.nodes) {
+        return 1.0;
+    }
+    let whole = mesh.volumes[active.elements[c] as usize];
+    (sim.cells.sums[c].volume / whole).min(1.0)
+}
+
+/// The greatest gap at which bodies touch, m.
+fn touching_gap(sim: &Simulation, meeting: &Meeting) -> f64 {
+    let cells = meeting.slots.map(|s| sim.active.attached(s as usize));
+    let elements = cells.into_iter().flatten();
+    let altitudes = elements.map(|a| {
+        let e = sim.active.elements[a.0 as usize];
+        sim.plan.mesh.altitudes[e as usize]
+    });
+    TOUCHING * altitudes.fold(f64::INFINITY, f64::min)
 }
 
 /// The particles of a node's field around it.

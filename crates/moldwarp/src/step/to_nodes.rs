@@ -129,6 +129,11 @@ fn sum_nodes(sim: &mut Simulation) {
     });
 }
 
+/// Whether a cell with these corners counts as filled.
+pub(super) fn is_filled(corners: &[u32; 4], nodes: &[Node]) -> bool {
+    corners.iter().all(|&n| nodes[n as usize].filling > FILLED)
+}
+
 /// Stress times volume of each cell, and the part of its work that belongs to the last drift.
 fn cell_forces(sim: &mut Simulation, before: f64) {
     let Simulation {
@@ -162,7 +167,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             let e = active.elements[c] as usize;
             let corners = active.cell_nodes[c].map(|n| &nodes[n as usize]);
             let sum = &sums[c];
-            force.filled = mixed && corners.iter().all(|n| n.filling > FILLED);
+            force.filled = mixed && is_filled(&active.cell_nodes[c], nodes);
             force.weighed = sum.mass;
             force.stress = if force.filled {
                 let around = around(c, active, mesh, sums);

@@ -223,8 +223,10 @@ pub fn run(fidelity: Fidelity) -> Report {
                     plot.line(format!("gap check {word}, h = {h} m"), o.force);
                 }
             }
-            // With the gap check, which is off by default in soil, it is less but need not fall.
-            if let ([.., coarse, fine], false) = (&noises[..], gap_check) {
+            // With the gap check, which is off by default in soil, it is less from the beginning, and falls
+            // on finer meshes only.
+            let falls = !gap_check || fidelity == Fidelity::Fine;
+            if let ([.., coarse, fine], true) = (&noises[..], falls) {
                 let name = format!("{}; μ = {friction}; gap check {word}", tool.name());
                 report.check(
                     format!("{name}: noise; finest over the next"),

@@ -4,6 +4,7 @@ use crate::args::CheckArgs;
 use crate::exit::{Exit, of_stop};
 use crate::run::load;
 use crate::{Failure, say, text};
+use moldwarp::mesh::Visit;
 use moldwarp_io::check::{Forecast, check as forecast};
 use std::time::Duration;
 use text::number;
@@ -37,6 +38,7 @@ fn plan(f: &Forecast, threads: usize) -> String {
             number(b.mass)
         )
     }));
+    lines.extend(f.visit.iter().flat_map(visit));
     lines.push(steps(f));
     lines.push(effort(f, threads));
     lines.push(format!(
@@ -47,6 +49,29 @@ fn plan(f: &Forecast, threads: usize) -> String {
     let columns: Vec<&str> = f.columns.iter().map(|c| c.0.as_str()).collect();
     lines.push(format!("history     {}", columns.join(" ")));
     lines.iter().map(|l| format!("{l}\n")).collect()
+}
+
+/// Fewer particles than this in an element give a poor mean of its stress.
+const FEW: f64 = 2.0;
+
+fn visit(visit: &Visit) -> Vec<String> {
+    let mut lines = vec![format!(
+        "motion      over {} m of motion elements of the moving volumes will hold {:.1} particles or more",
+        number(visit.travel),
+        visit.particles
+    )];
+    if visit.particles < FEW {
+        let x = visit.position;
+        lines.push(format!(
+            "            warning: that is fewer than {FEW}, at [{}, {}, {}] m after \
+             {} m of motion; take a smaller `particle_spacing` there",
+            number(x.x),
+            number(x.y),
+            number(x.z),
+            number(visit.after)
+        ));
+    }
+    lines
 }
 
 fn steps(f: &Forecast) -> String {

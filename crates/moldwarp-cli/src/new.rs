@@ -34,6 +34,10 @@ const CASES: &[Case] = &[
         "scene.toml", "fine.toml", "stand.toml", "limit.toml", "tunnel.geo", "fine.geo",
         "tunnel.msh", "figures.py", "README.md",
     ),
+    case!("drop-anchor":
+        "scene.toml", "fine.toml", "finest.toml", "anchor.geo", "fine.geo", "finest.geo", "blunt.geo",
+        "anchor.msh", "figures.py", "README.md",
+    ),
 ];
 
 /// Names of the examples.

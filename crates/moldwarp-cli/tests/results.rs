@@ -243,3 +243,32 @@ fn the_tunnel_face_is_computed() {
     let said = bench.fails(2, &["check", "mine/fine.toml"]);
     assert!(said.contains("gmsh"), "{said}");
 }
+
+/// The first 10 ms of the drop anchor out of the binary: it goes on with nearly the velocity of its
+/// impact, 9.7 m/s, the mesh goes along with it, no particle is in another body's elements, and the
+/// soil holds it back.
+#[test]
+fn the_drop_anchor_is_computed() {
+    let bench = Bench::new();
+    bench.done(&["new", "drop-anchor", "mine"]);
+    let plan = bench.done(&["check", "mine"]);
+    assert!(plan.contains("motion") && !plan.contains("warning"), "{plan}");
+    let short = ["--set", "stages.penetration.duration=10 ms"];
+    bench.done(&[&["run", "mine"][..], &short, &["--set", "output.frames=1"]].concat());
+    let summary = bench.summary("out/mine");
+    assert_eq!(summary["foreign_particles"].as_u64(), Some(0));
+    let turned_over = summary["energy_turned_over"].as_f64().unwrap();
+    let residual = summary["energy"]["residual"].as_f64().unwrap();
+    assert!(residual.abs() < 1e-9 * turned_over);
+    let history = csv::read(&bench.path("out/mine/history.csv")).unwrap();
+    let last = |name: &str| *history.column(name).unwrap().last().unwrap();
+    let (way, velocity) = (last("anchor.penetration"), last("anchor.velocity.z"));
+    assert!((way - 0.097).abs() < 0.001, "{way}");
+    assert!(velocity < -9.6 && velocity > -9.8, "{velocity}");
+    let tip = last("resistance-tip.contact.z");
+    assert!((tip - last("contact.anchor.normal.z") - last("contact.anchor.tangential.z")).abs() < 1.0);
+    assert!(tip > 5e3 && tip < 50e3, "{tip}");
+
+    let said = bench.fails(2, &["check", "mine/fine.toml"]);
+    assert!(said.contains("gmsh -2"), "{said}");
+}

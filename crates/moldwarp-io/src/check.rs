@@ -3,6 +3,7 @@
 use crate::mesh::describe_quality;
 use crate::run::{Expected, RunError, columns, end_time, frame_bytes, simulation, whole_factor};
 use crate::scene::{Every, Scene};
+use moldwarp::mesh::Visit;
 use moldwarp::plan::Until;
 use moldwarp::{Simulation, Stop};
 use std::time::{Duration, Instant};
@@ -15,6 +16,8 @@ pub struct Forecast {
     /// What [`describe_quality`] says of the mesh.
     pub mesh: [String; 2],
     pub bodies: Vec<BodyForecast>,
+    /// Where a moving mesh will hold fewest particles.
+    pub visit: Option<Visit>,
     /// The stable step at the start, s.
     pub stable_time_step: f64,
     /// The first step, s: the stable one unless another is forced.
@@ -67,11 +70,13 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
             .collect()
     };
     let title = scene.plan.title.clone();
+    let travel = scene.travel;
     let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
     let columns = columns(&sim);
     Expected::read_all(&scene.compare, &columns)?;
     let mesh = describe_quality(sim.mesh(), &scene.element_tags);
     let bodies = bodies(&sim, names);
+    let visit = sim.fewest_visited(travel);
     let stable_time_step = sim.stable_time_step();
     let time_step = sim.next_time_step();
     let end = end_time(&sim);
@@ -91,6 +96,7 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
         particles,
         mesh,
         bodies,
+        visit,
         stable_time_step,
         time_step,
         end,

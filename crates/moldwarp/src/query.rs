@@ -95,6 +95,29 @@ impl Simulation {
         self.contacts.projections
     }
 
+    /// Number of particles in elements that the structure of an aligned contact fills and that is not
+    /// their own.
+    pub fn foreign_particles(&self) -> usize {
+        let foreign = |p: &usize| {
+            let field = self.fields.of(self.particles.body[*p]);
+            self.contacts.is_foreign(field, self.particles.element[*p])
+        };
+        (0..self.particles.len()).filter(foreign).count()
+    }
+
+    /// Where the moving mesh will hold fewest particles, should it go `travel` metres on: half the way
+    /// that is ahead of its moving zone, if nothing is given. None if the mesh does not move.
+    pub fn fewest_visited(&self, travel: Option<f64>) -> Option<crate::mesh::Visit> {
+        let (mesh, driver) = (&self.plan.mesh, self.plan.mesh_motion.as_ref()?.driver);
+        let travel = travel.unwrap_or_else(|| self.driven.room(mesh));
+        let body = |p: usize| usize::from(self.particles.body[p]);
+        let own = |e: u32| self.particles_in(e).any(|p| body(p) == driver);
+        let driven: Vec<bool> = (0..mesh.tets.len() as u32).map(own).collect();
+        let inside = |e: u32| self.particles_in(e).len();
+        self.driven
+            .fewest(mesh, travel, |e| driven[e as usize], inside)
+    }
+
     /// What each contact of the plan does now.
     pub fn contact_tallies(&self) -> &[crate::contact::Tally] {
         &self.contacts.tallies

@@ -101,7 +101,10 @@ pub enum GmshProblem {
         "Gmsh's element type {0} is not known; 3-node triangles (2) and 4-node tetrahedra (4) are"
     )]
     UnknownElement(i64),
-    #[error("the file has no tetrahedra; mesh the geometry in 3D: `{command}`")]
+    #[error(
+        "the file has no tetrahedra; mesh the geometry in 3D: `{command}`; or `revolve` it if it is the \
+         plane mesh of a meridian"
+    )]
     NoTetrahedra { command: String },
     #[error(
         "the file has no triangles in a physical group; give the surfaces of the meridian physical \

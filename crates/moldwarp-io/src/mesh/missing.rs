@@ -1,12 +1,12 @@
 //! The mesh file that is not there: how to make it, or which one was meant.
 
 use super::MeshFileError;
-use super::gmsh::mesh_command;
 use std::path::Path;
 
-pub(super) fn error(path: &Path) -> MeshFileError {
+/// `command` makes the mesh of a geometry beside it.
+pub(super) fn error(path: &Path, command: fn(&Path) -> String) -> MeshFileError {
     let advice = if path.with_extension("geo").is_file() {
-        format!("make it with `{}`", mesh_command(path))
+        format!("make it with `{}`", command(path))
     } else {
         neighbours(path)
     };

@@ -42,12 +42,12 @@ pub struct MeshFile {
 /// Whatever keeps the file from being a mesh of tetrahedra, with the line (ASCII) or byte (binary)
 /// and what to do about it.
 pub fn read_gmsh(path: &Path) -> Result<MeshFile, MeshFileError> {
-    parse_gmsh(path, &bytes(path)?)
+    parse_gmsh(path, &bytes(path, gmsh::mesh_command)?)
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
+fn bytes(path: &Path, command: fn(&Path) -> String) -> Result<Vec<u8>, MeshFileError> {
     read_bytes(path).map_err(|source| match source.kind() {
-        io::ErrorKind::NotFound => missing::error(path),
+        io::ErrorKind::NotFound => missing::error(path, command),
         _ => MeshFileError::Unreadable {
             file: path.to_owned(),
             source,
@@ -77,7 +77,7 @@ pub struct PlaneFile {
 /// Whatever keeps the file from being such a mesh, with the line (ASCII) or byte (binary) and what to
 /// do about it.
 pub fn read_plane_gmsh(path: &Path) -> Result<PlaneFile, MeshFileError> {
-    gmsh::parse_plane(path, &bytes(path)?)
+    gmsh::parse_plane(path, &bytes(path, gmsh::plane_command)?)
 }
 
 /// Reads a Gmsh file from memory; `file` is its name in messages.

@@ -43,6 +43,8 @@ pub struct Summary {
     pub energy_turned_over: f64,
     /// What was put back onto its side of a face of an aligned contact.
     pub projections: Projected,
+    /// Particles in elements of another body of an aligned contact at the end; there should be none.
+    pub foreign_particles: usize,
     /// The comparisons that the scene asked for and that could be made.
     pub compare: Vec<Compared>,
     /// Number of threads at work; the results do not depend on them.
@@ -69,6 +71,8 @@ pub struct Projected {
     pub sum: f64,
     /// The greatest distance, m.
     pub greatest: f64,
+    /// Sum of the absolute works of gravity on the way, J.
+    pub work: f64,
 }
 
 /// A history against its reference.

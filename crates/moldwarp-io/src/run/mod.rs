@@ -253,7 +253,9 @@ fn computed(sim: &Simulation, pace: &Pace) -> Summary {
             count: projections.count,
             sum: projections.sum,
             greatest: projections.greatest,
+            work: projections.work * whole::factor(sim),
         },
+        foreign_particles: sim.foreign_particles(),
         state_hash: state_hash(sim),
         ..Summary::default()
     }

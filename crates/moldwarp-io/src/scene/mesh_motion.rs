@@ -5,7 +5,7 @@ use super::bodies::volumes;
 use super::error::Fault;
 use super::quantity::Dimension;
 use super::raw::RawMeshMotion;
-use super::values::{find, placed, vector};
+use super::values::{find, placed, positive, vector};
 use moldwarp::mesh::MotionError;
 use moldwarp::plan::{Body, MeshMotion};
 use moldwarp::{Mesh, Vec3};
@@ -50,6 +50,14 @@ pub(super) fn mesh_motion(
         moving,
         blend,
     }))
+}
+
+/// How far to look ahead, m.
+pub(super) fn travel(raw: Option<&Spanned<RawMeshMotion>>) -> Result<Option<f64>, Fault> {
+    let travel = raw.and_then(|raw| raw.get_ref().travel.as_ref());
+    travel
+        .map(|travel| positive("travel", travel, Dimension::Length))
+        .transpose()
 }
 
 /// What the solver found when it set up the motion, at the scene's table.

@@ -75,6 +75,8 @@ pub struct Scene {
     pub element_tags: Vec<u64>,
     /// The earlier run from which bodies have their particles, if there is one.
     pub earlier: Option<Earlier>,
+    /// How far ahead of a moving mesh [`check`](crate::check::check) looks, m, if it is said.
+    pub travel: Option<f64>,
     /// For messages that come up later.
     pub(crate) origin: Origin,
 }
@@ -121,6 +123,14 @@ impl Origin {
             }
             (SetupError::ProbeOfChange { probe, .. } | SetupError::ProbeOfNothing { probe }, _) => {
                 self.lost(error, probe)
+            }
+            (SetupError::NoContact { probe }, _) => {
+                let fault = Fault::new(error.to_string()).help(
+                    "name a surface of the first body of an aligned contact; the whole force is in the \
+                     columns contact.<name>",
+                );
+                let places = self.probes.iter().filter(|p| p.0 == *probe);
+                places.fold(fault, |fault, (_, place)| fault.at(place.clone(), "this probe"))
             }
             _ => Fault::new(error.to_string()),
         };
@@ -328,6 +338,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
         notes,
         element_tags,
         earlier: None,
+        travel: mesh_motion::travel(motion)?,
         origin: Origin {
             time_step: values::span(&raw.numerics.time_step),
             initial_stress: values::span(&raw.initial_stress),

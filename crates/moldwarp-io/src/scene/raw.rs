@@ -294,6 +294,10 @@ pub(super) struct RawMeshMotion {
     /// type: number × 3, not 0
     /// default: that of gravity
     pub direction: Option<RawVector>,
+    /// How far `moldwarp check` looks for elements that will hold too few particles.
+    /// type: length > 0
+    /// default: half the way ahead of the moving volumes
+    pub travel: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -45,11 +45,14 @@ pub struct Projections {
     /// Sum of the distances, and the greatest, m.
     pub sum: f64,
     pub greatest: f64,
+    /// Sum of the absolute works of gravity on the way, J.
+    pub work: f64,
 }
 
 impl Projections {
-    pub(crate) fn add(&mut self, distance: f64) {
+    pub(crate) fn add(&mut self, distance: f64, work: f64) {
         self.count += 1;
+        self.work += work.abs();
         self.sum += distance;
         self.greatest = self.greatest.max(distance);
     }
@@ -208,6 +211,12 @@ impl Contacts {
         let [from, to] = [from, to].map(|e| self.structure[e as usize]);
         let leaves = from == field as u32 && to != from;
         leaves || (to != NONE && to != from && self.aligned(field, to).is_some())
+    }
+
+    /// Whether an element is that of an aligned structure of another field.
+    pub fn is_foreign(&self, field: usize, element: u32) -> bool {
+        let structure = self.structure.get(element as usize);
+        structure.is_some_and(|&s| s != NONE && s != field as u32)
     }
 
     /// The aligned contact of a field with a structure.

@@ -17,7 +17,7 @@ mod walls;
 pub use cylinder::{CylinderError, CylinderSector, Split};
 pub use generate::box_mesh;
 pub use geometry::{barycentric, tetrahedron_gradients};
-pub use motion::{Driven, Follower, MotionError, Zones};
+pub use motion::{Driven, Follower, MotionError, Visit, Zones};
 pub use quality::Quality;
 pub use revolve::{PlaneMesh, Revolved};
 pub use walls::Walls;

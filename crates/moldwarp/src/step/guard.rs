@@ -31,7 +31,7 @@ pub(super) fn put_back(sim: &mut Simulation) -> Result<bool, Stop> {
         sim.particles.displacement[p] += moved;
         let work = sim.particles.mass[p] * sim.gravity.dot(moved);
         sim.ledger.gravity_work(work);
-        sim.contacts.projections.add(moved.length());
+        sim.contacts.projections.add(moved.length(), work);
     }
     Ok(crossed)
 }

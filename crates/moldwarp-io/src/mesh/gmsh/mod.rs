@@ -34,7 +34,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
 /// Reads the bytes of the file `path`, a plane mesh.
 pub(super) fn parse_plane(path: &Path, bytes: &[u8]) -> Result<PlaneFile> {
     read(path, bytes)?
-        .finish_plane(command(path, "-2"))
+        .finish_plane(plane_command(path))
         .map_err(|problem| whole(path, problem))
 }
 
@@ -162,6 +162,11 @@ fn physical_names(cursor: &mut Cursor, assembly: &mut Assembly) -> Result<()> {
 /// The command that makes the mesh `path` from the geometry of the same name.
 pub(super) fn mesh_command(path: &Path) -> String {
     command(path, "-3")
+}
+
+/// The same for a plane mesh.
+pub(super) fn plane_command(path: &Path) -> String {
+    command(path, "-2")
 }
 
 /// The same for a mesh that came out of higher order.

@@ -66,9 +66,9 @@ pub struct Driven {
     own: Vec<u32>,
     /// Other nodes and how far they move where the driver moves by a metre, m/m.
     carried: Vec<(u32, Vec3)>,
-    direction: Vec3,
+    pub(super) direction: Vec3,
     /// Whether each node belongs to the driver or its zone; nothing if the mesh has no driver.
-    zone: Vec<bool>,
+    pub(super) zone: Vec<bool>,
     /// Shortest altitude of each element when the motion began, m.
     altitudes: Vec<f64>,
 }

@@ -8,10 +8,12 @@
 mod driven;
 mod follower;
 mod harmonic;
+mod visits;
 
 pub use driven::{Driven, MotionError, Zones};
 pub use follower::Follower;
 use harmonic::harmonic;
+pub use visits::Visit;
 
 use super::Mesh;
 use rayon::prelude::*;

@@ -3,8 +3,8 @@
 //!
 //! Nodes of the driver's elements move with the driver's own material: its boundary stays on faces,
 //! and its particles keep their barycentric coordinates. All other nodes go by the driver's mean
-//! motion along one direction n where it touches its zone, times a weight w: 1 in the moving zone, 0 where the mesh is held in
-//! that direction. Between,
+//! motion along one direction n where it touches its zone, times a weight w: 1 in the moving zone, 0
+//! where the mesh is held in that direction. Between,
 //!
 //!   div (K ∇w) = 0,   K = V_e^(−2/3) (I + (κ − 1) n nᵀ),   κ = 10:
 //!

@@ -3,7 +3,7 @@
 //!
 //! Nodes of the driver's elements move with the driver's own material: its boundary stays on faces,
 //! and its particles keep their barycentric coordinates. All other nodes go by the driver's mean
-//! motion along one direction n, times a weight w: 1 in the moving zone, 0 where the mesh is held in
+//! motion along one direction n where it touches its zone, times a weight w: 1 in the moving zone, 0 where the mesh is held in
 //! that direction. Between,
 //!
 //!   div (K ∇w) = 0,   K = V_e^(−2/3) (I + (κ − 1) n nᵀ),   κ = 10:
@@ -62,8 +62,9 @@ pub enum MotionError {
 /// Moves mesh nodes with a body.
 #[derive(Clone, Debug, Default)]
 pub struct Driven {
-    /// Nodes of the driver's elements.
-    own: Vec<u32>,
+    /// Nodes of the driver's elements, and whether each belongs to the moving volumes, too: the mean
+    /// motion is that of these, or of all if there are none.
+    own: Vec<(u32, bool)>,
     /// Other nodes and how far they move where the driver moves by a metre, m/m.
     carried: Vec<(u32, Vec3)>,
     direction: Vec3,
@@ -95,6 +96,7 @@ impl Driven {
         let mut weights: Vec<Option<f64>> = (0..mesh.nodes.len() as u32)
             .map(|n| held(n).then_some(0.0))
             .collect();
+        let mut leads = vec![false; mesh.nodes.len()];
         for group in zones.moving.iter().map(|&g| &mesh.volume_groups[g]) {
             for &n in group.elements.iter().flat_map(|&e| &mesh.tets[e as usize]) {
                 if held(n) && !is_own[n as usize] {
@@ -105,11 +107,16 @@ impl Driven {
                     });
                 }
                 weights[n as usize] = Some(1.0);
+                leads[n as usize] = true;
             }
         }
         let all = || (0..mesh.nodes.len()).zip(is_own.iter().copied());
-        let own: Vec<u32> = all().filter(|n| n.1).map(|n| n.0 as u32).collect();
-        own.iter().for_each(|&n| weights[n as usize] = Some(1.0));
+        let own = all().filter(|n| n.1).map(|n| (n.0 as u32, leads[n.0]));
+        let mut own: Vec<(u32, bool)> = own.collect();
+        if !own.iter().any(|n| n.1) {
+            own.iter_mut().for_each(|n| n.1 = true);
+        }
+        own.iter().for_each(|n| weights[n.0 as usize] = Some(1.0));
         let zone = weights.iter().map(|w| *w == Some(1.0)).collect();
         let weights = harmonic(mesh, &weights, |e, slope| {
             let along = direction * (slope.dot(direction) * (STIFFER - 1.0));
@@ -139,11 +146,13 @@ impl Driven {
     /// Moves nodes; `driver` gives mass, kg, and displacement, m, of the driver at one of its nodes.
     pub fn shift(&self, nodes: &mut [Vec3], driver: impl Fn(u32) -> (f64, Vec3)) {
         let (mut mass, mut moved) = (0.0, 0.0);
-        for &n in &self.own {
+        for &(n, leads) in &self.own {
             let (m, u) = driver(n);
             nodes[n as usize] += u;
-            mass += m;
-            moved += m * u.dot(self.direction);
+            if leads {
+                mass += m;
+                moved += m * u.dot(self.direction);
+            }
         }
         if mass > 0.0 {
             let mean = moved / mass;
@@ -251,6 +260,37 @@ mod tests {
         let flat = driven.degenerate(&mesh).unwrap() as usize;
         assert!(mesh.volume_groups[0].elements.contains(&(flat as u32)));
         assert_eq!(mesh.turned_over(), None);
+    }
+
+    /// A driver that becomes longer: its zone goes with the end that touches it, and with the mean of
+    /// all of it where its own volume is among the moving ones.
+    #[test]
+    fn the_zone_goes_with_the_part_of_the_driver_that_touches_it() {
+        let (mut mesh, driver) = floors();
+        let zone_moves = |mesh: &Mesh| {
+            let zones = Zones {
+                driver: &driver,
+                moving: &[1, 2],
+                blend: &[0],
+            };
+            let free = held_below(mesh, 0.0);
+            let driven = Driven::new(mesh, zones, -Vec3::Z, free, |_| false, |_| String::new());
+            let mut nodes = mesh.nodes.clone();
+            let own = |n: u32| {
+                (
+                    1.0,
+                    Vec3::Z * (0.2 * (mesh.nodes[n as usize].z - 2.5) - 0.3),
+                )
+            };
+            driven.unwrap().shift(&mut nodes, own);
+            let n = mesh.nodes.iter().position(|x| x.z == 1.5).unwrap();
+            nodes[n].z - mesh.nodes[n].z
+        };
+        assert!((zone_moves(&mesh) + 0.25).abs() < 1e-12);
+        mesh.volume_groups[2]
+            .elements
+            .retain(|&e| !driver[e as usize]);
+        assert!((zone_moves(&mesh) + 0.3).abs() < 1e-12);
     }
 
     #[test]

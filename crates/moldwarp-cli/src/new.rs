@@ -38,6 +38,9 @@ const CASES: &[Case] = &[
         "scene.toml", "fine.toml", "finest.toml", "anchor.geo", "fine.geo", "finest.geo", "blunt.geo",
         "anchor.msh", "figures.py", "README.md",
     ),
+    case!("dynamic-probing":
+        "scene.toml", "fine.toml", "probe.geo", "fine.geo", "probe.msh", "figures.py", "README.md",
+    ),
 ];
 
 /// Names of the examples.

@@ -252,7 +252,10 @@ fn the_drop_anchor_is_computed() {
     let bench = Bench::new();
     bench.done(&["new", "drop-anchor", "mine"]);
     let plan = bench.done(&["check", "mine"]);
-    assert!(plan.contains("motion") && !plan.contains("warning"), "{plan}");
+    assert!(
+        plan.contains("motion") && !plan.contains("warning"),
+        "{plan}"
+    );
     let short = ["--set", "stages.penetration.duration=10 ms"];
     bench.done(&[&["run", "mine"][..], &short, &["--set", "output.frames=1"]].concat());
     let summary = bench.summary("out/mine");
@@ -266,7 +269,9 @@ fn the_drop_anchor_is_computed() {
     assert!((way - 0.097).abs() < 0.001, "{way}");
     assert!(velocity < -9.6 && velocity > -9.8, "{velocity}");
     let tip = last("resistance-tip.contact.z");
-    assert!((tip - last("contact.anchor.normal.z") - last("contact.anchor.tangential.z")).abs() < 1.0);
+    assert!(
+        (tip - last("contact.anchor.normal.z") - last("contact.anchor.tangential.z")).abs() < 1.0
+    );
     assert!(tip > 5e3 && tip < 50e3, "{tip}");
 
     let said = bench.fails(2, &["check", "mine/fine.toml"]);

@@ -216,7 +216,7 @@ impl Simulation {
         let fields = Fields::new(plan.bodies.len(), &plan.contacts, |b| is_rigid(&plan, b));
         order.sort(&mut particles, plan.mesh.tets.len(), &fields);
         let contacts = Contacts::new(&plan, &fields, &particles, &order.offsets)?;
-        let (loads, ground) = ground(&plan, &mut particles, &order.offsets)?;
+        let (loads, ground) = ground(&plan, &mut particles, &order.offsets, &contacts)?;
         let reference = reference(&plan, ground);
         let mut probes = Probes::new(&plan, &particles, &order.offsets);
         let found = probes.find_contacts(&plan, &contacts);
@@ -439,6 +439,7 @@ fn ground(
     plan: &Plan,
     particles: &mut Particles,
     offsets: &[u32],
+    contacts: &Contacts,
 ) -> Result<(Vec<LoadPoint>, Option<Ground>), SetupError> {
     let ground = plan.initial_stress.as_ref().map(|setting| {
         let switched = (&plan.boundaries, &plan.loads);
@@ -446,6 +447,10 @@ fn ground(
         let surfaces = surfaces.chain(switched.1.iter().map(|l| &l.surfaces));
         let mut held = vec![false; plan.mesh.nodes.len()];
         for n in surfaces.flat_map(|s| surface_nodes(&plan.mesh, s)) {
+            held[n as usize] = true;
+        }
+        // A structure in the ground holds it.
+        for n in contacts.nodes_of_faces() {
             held[n as usize] = true;
         }
         let filled = (&*particles, offsets);

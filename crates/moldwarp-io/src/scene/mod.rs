@@ -130,7 +130,9 @@ impl Origin {
                      columns contact.<name>",
                 );
                 let places = self.probes.iter().filter(|p| p.0 == *probe);
-                places.fold(fault, |fault, (_, place)| fault.at(place.clone(), "this probe"))
+                places.fold(fault, |fault, (_, place)| {
+                    fault.at(place.clone(), "this probe")
+                })
             }
             _ => Fault::new(error.to_string()),
         };

@@ -213,6 +213,11 @@ impl Contacts {
         leaves || (to != NONE && to != from && self.aligned(field, to).is_some())
     }
 
+    /// Nodes of the faces of aligned contacts.
+    pub fn nodes_of_faces(&self) -> impl Iterator<Item = u32> {
+        self.faces.iter().flatten().map(|f| f.0)
+    }
+
     /// Whether an element is that of an aligned structure of another field.
     pub fn is_foreign(&self, field: usize, element: u32) -> bool {
         let structure = self.structure.get(element as usize);

@@ -156,12 +156,12 @@ fn difference(one: &[(f64, f64)], other: &[(f64, f64)]) -> [f64; 2] {
     [square.sqrt() / mean, shift / mean]
 }
 
-/// Forces, and what a check of the run needs: on a base over the whole way.
+/// On a base, over the whole way.
 fn long(how: How, h: f64, friction: f64) -> (Outcome, Balance) {
     compute(plan(how, h, friction, true, WAY), h, WINDOW)
 }
 
-/// The same over a tenth of an element.
+/// Forces over a tenth of an element.
 fn short(how: How, h: f64, friction: f64) -> Vec<(f64, f64)> {
     let way = 0.1 * h;
     compute(plan(how, h, friction, true, way), h, way / 10.0)

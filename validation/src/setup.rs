@@ -205,6 +205,23 @@ pub fn with_surface_at(
     rebuilt(mesh, mesh.nodes.clone(), vec![(name.to_owned(), faces)])
 }
 
+/// The mesh with volumes made anew: each element belongs to what `name` says of its centroid.
+pub fn with_volumes(mesh: &Mesh, name: impl Fn(Vec3) -> &'static str) -> Mesh {
+    let mut groups: Vec<(String, Vec<u32>)> = Vec::new();
+    for e in 0..mesh.tets.len() {
+        let name = name(mesh.centroid(e));
+        match groups.iter_mut().find(|g| g.0 == name) {
+            Some(group) => group.1.push(e as u32),
+            None => groups.push((name.to_owned(), vec![e as u32])),
+        }
+    }
+    let groups = groups.into_iter();
+    let groups = groups.map(|(name, elements)| moldwarp::mesh::VolumeGroup { name, elements });
+    let mut mesh = mesh.clone();
+    mesh.volume_groups = groups.collect();
+    mesh
+}
+
 /// The mesh with its nodes moved.
 pub fn moved(mesh: &Mesh, place: impl Fn(Vec3) -> Vec3) -> Mesh {
     rebuilt(

@@ -40,5 +40,7 @@ coarse! {
     spheres = "spheres",
     stack = "stack",
     penetration = "penetration",
+    moving_ground = "moving-ground",
+    moving_push = "moving-push",
     drop = "drop",
 }

@@ -9,6 +9,7 @@ mod footings;
 mod gravity_column;
 mod heap;
 mod mass_matrix;
+mod moving_mesh;
 mod oedometer;
 mod rotation;
 mod sensitivity;
@@ -18,7 +19,7 @@ mod thick_cylinder;
 use crate::Case;
 
 /// All cases, in the order of the book.
-pub const ALL: [Case; 20] = [
+pub const ALL: [Case; 22] = [
     Case {
         name: "absorbing-column",
         title: "Suddenly loaded layer: rigid bottom, dashpot, dashpot and spring",
@@ -118,6 +119,16 @@ pub const ALL: [Case; 20] = [
         name: "penetration",
         title: "A rigid wedge and a rigid cone pushed into soil",
         run: contact::penetration::run,
+    },
+    Case {
+        name: "moving-ground",
+        title: "A mesh moves through ground at rest",
+        run: moving_mesh::ground::run,
+    },
+    Case {
+        name: "moving-push",
+        title: "A punch takes the mesh along, or goes through a fixed one",
+        run: moving_mesh::push::run,
     },
 ];
 

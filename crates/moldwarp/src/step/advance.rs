@@ -46,6 +46,8 @@ fn move_mesh(sim: &mut Simulation) -> Result<(), Stop> {
     follower.shift(&mut mesh.nodes, moved(active, nodes));
     mesh.update_geometry();
     match mesh.turned_over() {
+        // In a single step, from flat but not degenerate.
+        Some(element) if sim.driven.moves() => Err(sim.degenerate(element)),
         Some(element) => Err(sim.turned_over(element)),
         None => Ok(()),
     }

@@ -11,7 +11,7 @@ use moldwarp::plan::{Body, Contact, ContactSurface, Place, Region, Seeding};
 use moldwarp::{Simulation, Vec3};
 
 /// A body of the first material.
-fn body(name: &str, region: Region) -> Body {
+pub(in crate::cases) fn body(name: &str, region: Region) -> Body {
     Body {
         name: name.to_owned(),
         place: Place::Region(region),
@@ -21,7 +21,11 @@ fn body(name: &str, region: Region) -> Body {
 }
 
 /// A contact without adhesion between two bodies, with the gap check.
-fn contact(bodies: [usize; 2], friction: f64, surface: ContactSurface) -> Contact {
+pub(in crate::cases) fn contact(
+    bodies: [usize; 2],
+    friction: f64,
+    surface: ContactSurface,
+) -> Contact {
     Contact {
         name: format!("{}-{}", bodies[0], bodies[1]),
         bodies: bodies.map(|b| vec![b]),

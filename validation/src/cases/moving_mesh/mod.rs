@@ -1,0 +1,4 @@
+//! A mesh that moves with a body.
+
+pub mod ground;
+pub mod push;

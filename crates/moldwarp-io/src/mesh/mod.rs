@@ -77,7 +77,16 @@ pub struct PlaneFile {
 /// Whatever keeps the file from being such a mesh, with the line (ASCII) or byte (binary) and what to
 /// do about it.
 pub fn read_plane_gmsh(path: &Path) -> Result<PlaneFile, MeshFileError> {
-    gmsh::parse_plane(path, &bytes(path, gmsh::plane_command)?)
+    parse_plane_gmsh(path, &bytes(path, gmsh::plane_command)?)
+}
+
+/// Reads a plane mesh from memory; `file` is its name in messages.
+///
+/// # Errors
+///
+/// As [`read_plane_gmsh`].
+pub fn parse_plane_gmsh(file: &Path, bytes: &[u8]) -> Result<PlaneFile, MeshFileError> {
+    gmsh::parse_plane(file, bytes)
 }
 
 /// Reads a Gmsh file from memory; `file` is its name in messages.

@@ -102,6 +102,9 @@ pub(super) struct RawMesh {
     /// type: text: m, cm or mm
     /// default: m
     pub unit: Option<Text>,
+    /// Revolves the file's plane mesh of triangles about the axis z; see [meridians](#meridians).
+    /// type: `{ angle, cells }`
+    /// default: –
     pub revolve: Option<Spanned<RawRevolve>>,
     #[serde(rename = "box")]
     pub cuboid: Option<Spanned<RawBox>>,
@@ -111,8 +114,7 @@ pub(super) struct RawMesh {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawRevolve {
-    /// Revolves a plane mesh of triangles, the file's, by this angle about the axis z; see
-    /// [meridians](#meridians). Less than 90° for each cell around.
+    /// Of the sector; less than 90° for each cell around.
     /// type: angle, 0 < α ≤ 180°
     pub angle: RawAmount,
     /// Layers of elements around.

@@ -1,6 +1,7 @@
 //! The reader of Gmsh files, from literals and from files that Gmsh wrote.
 
 mod damage;
+mod plane;
 mod read;
 mod refuse;
 mod write;

@@ -134,7 +134,7 @@ fn a_mesh_needs_tetrahedra_and_no_partitions() {
     assert_eq!(
         v22("8 4 2 1 1 10 20 30 40", "8 2 2 5 1 10 20 30"),
         "mesh.msh: the file has no tetrahedra; mesh the geometry in 3D: `gmsh -3 mesh.geo -o \
-         mesh.msh`"
+         mesh.msh`; or `revolve` it if it is the plane mesh of a meridian"
     );
     assert_eq!(
         v41(

@@ -102,8 +102,8 @@ def resistance(all_runs, to):
     figure, axes = plt.subplots(figsize=(6, 4))
     for (mu, folder), style in zip([all_runs[-1], all_runs[0]], ["-", "--"]):
         h = history(folder)
-        # Until it is deepest, but for the first instants.
-        own = slice(5, h["tip.penetration"].argmax())
+        # Until it is deepest, without the ends, where there is no running mean.
+        own = slice(6, h["tip.penetration"].argmax() - 6)
         for part, colour in [("tip", "tab:blue"), ("shaft", "tab:orange")]:
             force = h[f"resistance-{part}.contact.z"] / 1e3
             mean = np.convolve(force, np.ones(11) / 11, "same")

@@ -9,16 +9,15 @@ use crate::simulation::{Simulation, Stop};
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     move_particles(sim);
-    let moves = sim.driven.moves() || sim.follower.moves();
-    if moves {
+    if sim.driven.moves() || sim.follower.moves() {
         move_mesh(sim)?;
     }
     if locate(sim)? {
         sim.reorder();
     }
     match sim.driven.degenerate(&sim.plan.mesh) {
-        Some(element) if moves => Err(sim.degenerate(element)),
-        _ => Ok(()),
+        Some(element) => Err(sim.degenerate(element)),
+        None => Ok(()),
     }
 }
 

@@ -169,10 +169,10 @@ impl Meeting {
     }
 
     /// Corrects the velocities that move the nodes, in the state of the kick: what has stuck moves
-    /// together, what slides does so along the normals, what is open is left alone, and what adheres without
-    /// pressure is free along the normals. What was pressed together in the kick does not part in the drift that follows either: were only approach stopped,
+    /// together, what slides does so along the normals and never against the friction of the kick, what is
+    /// open is left alone, and what adheres without pressure is free along the normals. What was pressed together in the kick does not part in the drift that follows either: were only approach stopped,
     /// forces would do work on every accidental departure and take none back, and bodies that rest on
-    /// each other would shake more and more.
+    /// each other would shake more and more. Friction, likewise, would drive what slides back in the drift.
     fn move_together(&self, a: &mut Mass, b: &mut Mass, free: &Mat3) {
         if self.state == State::Open {
             return;
@@ -193,8 +193,11 @@ impl Meeting {
             let beyond = approach - approach.clamp(0.0, self.allowed[k]);
             relative = give(self.normals[k] * beyond);
         }
+        let along = self.tangent(*free * relative);
         if self.state == State::Sticking {
-            give(self.tangent(*free * relative));
+            give(along);
+        } else if let Some(t) = self.tangential.try_normalize() {
+            give(t * along.dot(t).min(0.0));
         }
     }
 }
@@ -337,6 +340,22 @@ mod tests {
             let (meeting, [a, b]) = adhering(strength(adhesion), touching, v);
             assert_eq!((meeting.state, meeting.friction), (State::Open, Vec3::ZERO));
             assert_eq!((a.velocity, b.velocity), (v, Vec3::ZERO));
+        }
+    }
+
+    /// What slid in the kick may go on in the drift, but not back: friction would drive it.
+    #[test]
+    fn what_slides_does_not_slide_back_in_the_drift() {
+        let (meeting, _) = pair(0.5, Vec3::new(1.0, 0.0, 0.5));
+        assert_eq!(meeting.state, State::Sliding);
+        for (drift, expected) in [(0.3, 0.3), (-0.3, 0.0)] {
+            let mut masses = two(Vec3::new(drift, 0.1, 0.0));
+            let momentum = |m: &[Mass; 2]| 2.0 * m[0].velocity + 3.0 * m[1].velocity;
+            let before = momentum(&masses);
+            move_together(&[meeting], |_| [0, 1], &mut masses, &Mat3::IDENTITY);
+            let relative = masses[0].velocity - masses[1].velocity;
+            assert!((relative - Vec3::new(expected, 0.1, 0.0)).length() < 1e-15);
+            assert!((momentum(&masses) - before).length() < 1e-15);
         }
     }
 

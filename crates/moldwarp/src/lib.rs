@@ -10,6 +10,7 @@
 mod bodies;
 pub mod boundary;
 pub mod contact;
+mod lanes;
 pub mod material;
 pub mod measure;
 pub mod mesh;
@@ -26,6 +27,7 @@ mod switches;
 pub mod symmetry;
 pub mod tensor;
 
+pub use lanes::Simd;
 pub use material::Material;
 pub use mesh::Mesh;
 pub use particles::Particles;

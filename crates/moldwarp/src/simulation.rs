@@ -6,6 +6,7 @@ use crate::boundary::{
     Absorbing, Constraints, LoadError, LoadPoint, Surroundings, load_points, surface_nodes,
 };
 use crate::contact::{ContactError, Contacts, Fields, is_rigid};
+use crate::lanes::Simd;
 use crate::measure::{Ledger, Probes, Scale, Watch};
 use crate::mesh::{Driven, Follower, MotionError, Walls};
 use crate::particles::initial_stress::{self, Ground};
@@ -199,6 +200,7 @@ pub struct Simulation {
     pub(crate) switches: Switches,
     pub(crate) watch: Watch,
     pub(crate) scale: Scale,
+    pub(crate) simd: Simd,
     /// Nodes before the last renumbering and their keys, kept so that no step allocates.
     spare_nodes: Vec<Node>,
     spare_numbers: Vec<u32>,
@@ -251,6 +253,7 @@ impl Simulation {
             clock: Clock::default(),
             watch: Watch::default(),
             scale: Scale::default(),
+            simd: Simd::default(),
             spare_nodes: Vec::new(),
             spare_numbers: Vec::new(),
         };
@@ -281,6 +284,12 @@ impl Simulation {
         // They are among the particles now.
         simulation.plan.inherited = Particles::default();
         Ok(simulation)
+    }
+
+    /// Has the step use these instructions; without it, it uses the best that there are. Results are
+    /// the same.
+    pub fn use_simd(&mut self, simd: Simd) {
+        self.simd = simd;
     }
 
     /// Gives every particle the velocity (m/s) that `velocity` has at its position (m). For the

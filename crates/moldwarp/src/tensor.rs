@@ -5,7 +5,7 @@
 
 mod principal;
 
-pub use principal::{Principal, principal};
+pub use principal::{Principal, principal, principal_if_ordinary};
 
 use crate::{Mat3, Vec3};
 
@@ -13,19 +13,19 @@ use crate::{Mat3, Vec3};
 pub type Voigt = [f64; 6];
 
 /// Σ aᵢ bᵢ; the double contraction if `a` is a stress and `b` a strain.
-#[inline]
+#[inline(always)]
 pub fn dot(a: &Voigt, b: &Voigt) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
 }
 
 /// Sum of the normal components.
-#[inline]
+#[inline(always)]
 pub fn trace(a: &Voigt) -> f64 {
     a[0] + a[1] + a[2]
 }
 
 /// a + f b.
-#[inline]
+#[inline(always)]
 pub fn add_scaled(a: &mut Voigt, b: &Voigt, f: f64) {
     for k in 0..6 {
         a[k] += b[k] * f;
@@ -33,7 +33,7 @@ pub fn add_scaled(a: &mut Voigt, b: &Voigt, f: f64) {
 }
 
 /// The symmetric matrix of a stress.
-#[inline]
+#[inline(always)]
 pub fn to_matrix(s: &Voigt) -> Mat3 {
     Mat3::from_cols(
         Vec3::new(s[0], s[3], s[5]),
@@ -43,7 +43,7 @@ pub fn to_matrix(s: &Voigt) -> Mat3 {
 }
 
 /// The stress of a symmetric matrix.
-#[inline]
+#[inline(always)]
 pub fn from_matrix(m: &Mat3) -> Voigt {
     [
         m.x_axis.x, m.y_axis.y, m.z_axis.z, m.x_axis.y, m.y_axis.z, m.z_axis.x,
@@ -51,20 +51,20 @@ pub fn from_matrix(m: &Mat3) -> Voigt {
 }
 
 /// Engineering strain, the symmetric part of a displacement gradient.
-#[inline]
+#[inline(always)]
 pub fn strain(gradient: &Mat3) -> Voigt {
     let (x, y, z) = (gradient.x_axis, gradient.y_axis, gradient.z_axis);
     [x.x, y.y, z.z, x.y + y.x, y.z + z.y, z.x + x.z]
 }
 
 /// Full contraction σ : ∇u of a stress with a displacement gradient.
-#[inline]
+#[inline(always)]
 pub fn contract(stress: &Voigt, gradient: &Mat3) -> f64 {
     dot(stress, &strain(gradient))
 }
 
 /// σ · n.
-#[inline]
+#[inline(always)]
 pub fn times(s: &Voigt, n: Vec3) -> Vec3 {
     Vec3::new(
         s[0] * n.x + s[3] * n.y + s[5] * n.z,
@@ -74,14 +74,17 @@ pub fn times(s: &Voigt, n: Vec3) -> Vec3 {
 }
 
 /// Q σ Qᵀ.
-#[inline]
+#[inline(always)]
 pub fn rotate(s: &Voigt, q: &Mat3) -> Voigt {
-    from_matrix(&(*q * to_matrix(s) * q.transpose()))
+    let turned = *q * to_matrix(s);
+    let (x, y, z) = (turned.row(0), turned.row(1), turned.row(2));
+    let (a, b, c) = (q.row(0), q.row(1), q.row(2));
+    [x.dot(a), y.dot(b), z.dot(c), x.dot(b), y.dot(c), z.dot(a)]
 }
 
 /// The rotation of a step from the spin increment, Q = (I − W/2)⁻¹ (I + W/2) with W the skew
 /// part of `gradient`: orthogonal for any W (Hughes and Winget 1980).
-#[inline]
+#[inline(always)]
 pub fn spin_rotation(gradient: &Mat3) -> Mat3 {
     // With the half axial vector r = ½ axial(W), Q = I + 2/(1+r²) (R + R²), R = r×.
     let (x, y, z) = (gradient.x_axis, gradient.y_axis, gradient.z_axis);

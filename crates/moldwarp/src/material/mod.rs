@@ -8,6 +8,7 @@ pub use mohr_coulomb::{
     MohrCoulomb, MohrCoulombParameters, MohrCoulombState, ParameterError, PlasticStep, YieldState,
 };
 
+use crate::lanes::{LANES, Lane, Simd, VoigtLanes, get, set};
 use crate::tensor::Voigt;
 
 /// Most state variables that a model may keep per particle.
@@ -30,6 +31,34 @@ pub struct Update {
     pub stress: Voigt,
     /// The plastic part of the strain increment.
     pub plastic_strain: Voigt,
+}
+
+/// Strain increments of particles side by side, all of one material.
+#[derive(Clone, Debug)]
+pub struct Strained {
+    /// Stress before, rotated by the step's spin, Pa.
+    pub before: VoigtLanes,
+    pub strain: VoigtLanes,
+    /// New stress, Pa.
+    pub stress: VoigtLanes,
+    /// Whether any lane has a plastic strain; without any, `plastic_strain` is not set.
+    pub plastic: bool,
+    pub plastic_strain: VoigtLanes,
+    pub state: [Lane; STATE_SIZE],
+}
+
+impl Default for Strained {
+    fn default() -> Strained {
+        let zero = [[0.0; LANES]; 6];
+        Strained {
+            before: zero,
+            strain: zero,
+            stress: zero,
+            plastic: false,
+            plastic_strain: zero,
+            state: [[0.0; LANES]; STATE_SIZE],
+        }
+    }
 }
 
 /// A material model with its parameters.
@@ -63,6 +92,22 @@ impl Material {
                 stress: [0.0; 6],
                 plastic_strain: [0.0; 6],
             },
+        }
+    }
+
+    /// [`Material::update`] of particles side by side. A model need not have its own way of doing it.
+    pub fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
+        match self {
+            Material::MohrCoulomb(soil) => soil.update_lanes(simd, s, lanes),
+            Material::LinearElastic(_) | Material::Rigid => {
+                s.plastic = false;
+                for l in 0..lanes {
+                    let mut state = get(&s.state, l);
+                    let update = self.update(&get(&s.before, l), &get(&s.strain, l), &mut state);
+                    set(&mut s.stress, l, update.stress);
+                    set(&mut s.state, l, state);
+                }
+            }
         }
     }
 

@@ -11,6 +11,7 @@
 
 use super::Voigt;
 use crate::Vec3;
+use crate::lanes::either;
 
 /// σ = Σ valuesᵢ nᵢ ⊗ nᵢ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +29,7 @@ pub struct Principal {
 pub fn principal(s: &Voigt) -> Principal {
     let b = deviator(s);
     let norm_squared = square(&b);
-    if (1e-100..1e100).contains(&norm_squared) {
+    if is_ordinary(norm_squared) {
         return decompose(s, &b, norm_squared);
     }
     // Zero, isotropic, tiny or huge: the components are brought to a size of which the powers
@@ -51,22 +52,36 @@ pub fn principal(s: &Voigt) -> Principal {
     }
 }
 
+/// Whether [`decompose`] can take a deviator of this square.
+#[inline(always)]
+fn is_ordinary(norm_squared: f64) -> bool {
+    norm_squared >= 1e-100 && norm_squared < 1e100
+}
+
+/// [`principal`] of an ordinary stress, without branches, and whether this one is.
+#[inline(always)]
+pub fn principal_if_ordinary(s: &Voigt) -> (Principal, bool) {
+    let b = deviator(s);
+    let norm_squared = square(&b);
+    (decompose(s, &b, norm_squared), is_ordinary(norm_squared))
+}
+
 /// s − tr s/3 I, but for round-off: any shift will do.
-#[inline]
+#[inline(always)]
 fn deviator(s: &Voigt) -> Voigt {
     let mean = super::trace(s) * (1.0 / 3.0);
     [s[0] - mean, s[1] - mean, s[2] - mean, s[3], s[4], s[5]]
 }
 
 /// b : b
-#[inline]
+#[inline(always)]
 fn square(b: &Voigt) -> f64 {
     (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) + 2.0 * (b[3] * b[3] + b[4] * b[4] + b[5] * b[5])
 }
 
-/// `b` is the deviator of `s`. Choices that depend on its values are made by index, not by
-/// branches, which random stresses would predict wrongly.
-#[inline]
+/// `b` is the deviator of `s`. Choices that depend on its values are selections between what has been
+/// computed for all cases, so that several stresses can be decomposed side by side.
+#[inline(always)]
 fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let unit_squared = norm_squared * (1.0 / 6.0);
     let unit = unit_squared.sqrt();
@@ -84,34 +99,47 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let difference = 0.5 * (ww - uu);
     let radius = (difference * difference + uw * uw).sqrt();
     // Equal values, far below round-off: no rotation.
-    let (cosine, sine) = if radius > 1e-20 * unit {
-        (difference.abs() / radius, uw / radius)
-    } else {
-        (1.0, 0.0)
-    };
+    let differ = radius > 1e-20 * unit;
+    let cosine = either(differ, difference.abs() / radius, 1.0);
+    let sine = either(differ, uw / radius, 0.0);
     let large = (0.5 + 0.5 * cosine).sqrt();
     let small = 0.5 * sine / large;
-    let (f, g) = if difference >= 0.0 {
-        (small, large)
-    } else {
-        (large, small)
-    };
+    let ascending = difference >= 0.0;
+    let f = either(ascending, small, large);
+    let g = either(ascending, large, small);
     let (high, low) = (u * f + w * g, u * g - w * f);
 
     // The lonely value is first or last.
     let mean = s[0] - b[0];
     let alone = lonely.dot(super::times(b, lonely));
-    let first = usize::from(half < 0.0);
-    let values = [alone, centre + radius, centre - radius, alone];
-    let directions = [lonely, high, low, lonely];
+    let last = half < 0.0;
+    let (top, bottom) = (mean + (centre + radius), mean + (centre - radius));
+    let alone = mean + alone;
     Principal {
-        values: std::array::from_fn(|i| mean + values[first + i]),
-        directions: std::array::from_fn(|i| directions[first + i]),
+        values: [
+            either(last, top, alone),
+            either(last, bottom, top),
+            either(last, alone, bottom),
+        ],
+        directions: [
+            either_vector(last, high, lonely),
+            either_vector(last, low, high),
+            either_vector(last, lonely, low),
+        ],
     }
 }
 
+#[inline(always)]
+fn either_vector(first: bool, a: Vec3, b: Vec3) -> Vec3 {
+    Vec3::new(
+        either(first, a.x, b.x),
+        either(first, a.y, b.y),
+        either(first, a.z, b.z),
+    )
+}
+
 /// The largest root of β³ − 3β = 2h for 0 ≤ h ≤ 1, 2 cos(arccos(h) / 3).
-#[inline]
+#[inline(always)]
 fn lonely_root(h: f64) -> f64 {
     // Interpolates in Chebyshev points, off by at most 1e-5. A Newton step squares that error;
     // the second one can keep the slope of the first.
@@ -124,7 +152,7 @@ fn lonely_root(h: f64) -> f64 {
 }
 
 /// Direction of a simple principal value: the longest column of the adjugate of B − value I.
-#[inline]
+#[inline(always)]
 fn lonely_direction(b: &Voigt, value: f64) -> Vec3 {
     let rows = [
         Vec3::new(b[0] - value, b[3], b[5]),
@@ -138,14 +166,14 @@ fn lonely_direction(b: &Voigt, value: f64) -> Vec3 {
         rows[0].cross(rows[1]),
     ];
     let (x, y, z) = (columns[0].x, columns[1].y, columns[2].z);
-    let xy = usize::from(y > x);
-    let longest = columns[if z > x.max(y) { 2 } else { xy }];
+    let of_two = either_vector(y > x, columns[1], columns[0]);
+    let longest = either_vector(z > either(y > x, y, x), columns[2], of_two);
     longest * (1.0 / longest.length())
 }
 
 /// Two unit vectors at right angles to the unit vector `n` and to each other (T. Duff et al.,
 /// "Building an orthonormal basis, revisited", 2017).
-#[inline]
+#[inline(always)]
 fn complement(n: Vec3) -> (Vec3, Vec3) {
     let sign = 1f64.copysign(n.z);
     let a = -1.0 / (sign + n.z);

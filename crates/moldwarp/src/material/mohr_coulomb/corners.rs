@@ -10,10 +10,12 @@
 //! satisfies its conditions; at borders, where round-off may let none, the corner is taken that
 //! violates them least, and is in error by round-off too.
 
-use super::MohrCoulombParameters;
+use super::{MohrCoulombParameters, YieldState};
+use crate::lanes::either;
 use crate::material::LinearElastic;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub(super) enum Corner {
     /// Shear plane 13.
     Plane,
@@ -35,15 +37,48 @@ pub(super) enum Corner {
     LowerPoint,
 }
 
+impl Corner {
+    #[inline(always)]
+    fn yielding(self) -> YieldState {
+        match self {
+            Corner::Plane => YieldState::Shear,
+            Corner::UpperEdge | Corner::LowerEdge => YieldState::Edge,
+            Corner::Apex => YieldState::Apex,
+            _ => YieldState::Tension,
+        }
+    }
+}
+
 /// Result of the return.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     pub stress: [f64; 3],
     pub corner: Corner,
+    /// What `corner` is called outside. (Kept, as a table of it would keep loops over lanes scalar.)
+    pub yielding: YieldState,
     /// Volumetric plastic strain of the cut-off planes, or at the apex.
     pub opening: f64,
     /// Largest violation of the corner's conditions, Pa.
     pub violation: f64,
+}
+
+impl Found {
+    /// This one if it violates nothing, else the one of the two that violates less.
+    #[inline(always)]
+    fn or(self, other: Found) -> Found {
+        let better = (self.violation > 0.0) & (other.violation < self.violation);
+        Found {
+            stress: [
+                either(better, other.stress[0], self.stress[0]),
+                either(better, other.stress[1], self.stress[1]),
+                either(better, other.stress[2], self.stress[2]),
+            ],
+            corner: either(better, other.corner, self.corner),
+            yielding: either(better, other.yielding, self.yielding),
+            opening: either(better, other.opening, self.opening),
+            violation: either(better, other.violation, self.violation),
+        }
+    }
 }
 
 /// Constants of the surface and of the flow.
@@ -127,7 +162,8 @@ impl Corners {
     }
 
     /// f of a pair of principal stresses.
-    fn shear_function(&self, a: f64, b: f64) -> f64 {
+    #[inline(always)]
+    pub(super) fn shear_function(&self, a: f64, b: f64) -> f64 {
         self.up * a - self.down * b - 2.0 * self.half_strength
     }
 
@@ -143,29 +179,24 @@ impl Corners {
 
     /// The admissible stress of a sorted predictor `t` outside the surface.
     pub(super) fn return_map(&self, t: &[f64; 3]) -> Found {
+        if !self.has_cutoff {
+            return self.return_without_cutoff(t);
+        }
         // Most often.
         let mut best = self.onto_plane(t);
         if best.violation <= 0.0 {
             return best;
         }
-        let tries: &[fn(&Corners, &[f64; 3]) -> Found] = if !self.has_cutoff {
-            &[
-                Corners::onto_upper_edge,
-                Corners::onto_lower_edge,
-                Corners::onto_apex,
-            ]
-        } else {
-            &[
-                Corners::onto_upper_edge,
-                Corners::onto_lower_edge,
-                Corners::onto_cutoff_plane,
-                Corners::onto_cutoff_edge,
-                Corners::onto_cutoff_point,
-                Corners::onto_mixed_edge,
-                Corners::onto_upper_point,
-                Corners::onto_lower_point,
-            ]
-        };
+        let tries: [fn(&Corners, &[f64; 3]) -> Found; 8] = [
+            Corners::onto_upper_edge,
+            Corners::onto_lower_edge,
+            Corners::onto_cutoff_plane,
+            Corners::onto_cutoff_edge,
+            Corners::onto_cutoff_point,
+            Corners::onto_mixed_edge,
+            Corners::onto_upper_point,
+            Corners::onto_lower_point,
+        ];
         for onto_corner in tries {
             let found = onto_corner(self, t);
             if found.violation <= 0.0 {
@@ -178,7 +209,21 @@ impl Corners {
         best
     }
 
+    pub(super) fn has_cutoff(&self) -> bool {
+        self.has_cutoff
+    }
+
+    /// The same without a cut-off, and without branches, so that several can be returned side by side.
+    #[inline(always)]
+    pub(super) fn return_without_cutoff(&self, t: &[f64; 3]) -> Found {
+        let plane = self.onto_plane(t);
+        let upper = plane.or(self.onto_upper_edge(t));
+        let lower = upper.or(self.onto_lower_edge(t));
+        lower.or(self.onto_apex(t))
+    }
+
     /// 2G C⁻¹ d.
+    #[inline(always)]
     fn strain(&self, d: [f64; 3]) -> [f64; 3] {
         let mean = self.poisson_share * (d[0] + d[1] + d[2]);
         [d[0] - mean, d[1] - mean, d[2] - mean]
@@ -186,17 +231,20 @@ impl Corners {
 
     /// A result without opening. Without a cut-off its conditions on σ₁ never matter more than
     /// those that keep σ below the apex.
+    #[inline(always)]
     fn shear_result(&self, stress: [f64; 3], corner: Corner, violation: f64) -> Found {
         let order = (stress[1] - stress[0]).max(stress[2] - stress[1]);
         Found {
             stress,
             corner,
+            yielding: corner.yielding(),
             opening: 0.0,
             violation: violation.max(order).max(stress[0] - self.tip),
         }
     }
 
     /// `opening` and `violation` in units of 2G times a strain.
+    #[inline(always)]
     fn cutoff_result(
         &self,
         stress: [f64; 3],
@@ -207,18 +255,25 @@ impl Corners {
         Found {
             stress,
             corner,
+            yielding: corner.yielding(),
             opening: opening.max(0.0) / self.shear,
             violation,
         }
     }
 
+    #[inline(always)]
     fn onto_plane(&self, t: &[f64; 3]) -> Found {
         let factor = self.shear_function(t[0], t[2]) * self.plane;
-        let stress = std::array::from_fn(|i| t[i] - factor * self.relief[i]);
+        let stress = [
+            t[0] - factor * self.relief[0],
+            t[1] - factor * self.relief[1],
+            t[2] - factor * self.relief[2],
+        ];
         self.shear_result(stress, Corner::Plane, -factor * self.shear)
     }
 
     /// Sum s of both planes' factors from f₁₃ + f₂₃ = 0, their difference from σ₁ = σ₂.
+    #[inline(always)]
     fn onto_upper_edge(&self, t: &[f64; 3]) -> Found {
         let sum = (self.shear_function(t[0], t[2]) + self.shear_function(t[1], t[2])) * self.upper;
         let difference = (t[0] - t[1]) / self.flow_up;
@@ -227,6 +282,7 @@ impl Corners {
         self.shear_result(stress, Corner::UpperEdge, difference - sum * self.shear)
     }
 
+    #[inline(always)]
     fn onto_lower_edge(&self, t: &[f64; 3]) -> Found {
         let sum = (self.shear_function(t[0], t[2]) + self.shear_function(t[0], t[1])) * self.lower;
         let difference = (t[1] - t[2]) / self.flow_down;
@@ -236,6 +292,7 @@ impl Corners {
     }
 
     /// The cone of flow directions; for ψ = 0 its closure, all increments with tr ε ≥ 0.
+    #[inline(always)]
     fn onto_apex(&self, t: &[f64; 3]) -> Found {
         let e = self.strain(t.map(|t| t - self.tip));
         let (up, down) = (self.flow_up, self.flow_down);

@@ -50,6 +50,7 @@
 //! stress. Material that was never in tension at the cut-off has w = 0 and is not concerned.
 
 mod corners;
+mod lanes;
 mod parameters;
 mod particle;
 #[cfg(test)]
@@ -61,8 +62,9 @@ pub use parameters::{MohrCoulombParameters, ParameterError};
 pub(super) use particle::{STATE_FIELDS, is_separated, solid_share};
 
 use super::LinearElastic;
+use crate::Vec3;
 use crate::tensor::{self, Voigt};
-use corners::{Corner, Corners};
+use corners::Corners;
 
 /// The model with the constants that its return needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -155,19 +157,41 @@ impl PlasticStep {
     }
 
     /// tr Δε^p.
+    #[inline(always)]
     pub fn plastic_volume(&self) -> f64 {
         tensor::trace(&self.plastic_strain)
     }
 
     /// √(2/3 Δe^p : Δe^p) with Δe^p the deviator of the plastic strain increment.
+    #[inline(always)]
     pub fn plastic_shear(&self) -> f64 {
-        let e = &self.plastic_strain;
-        let mean = self.plastic_volume() / 3.0;
-        let (x, y, z) = (e[0] - mean, e[1] - mean, e[2] - mean);
-        let normal = x * x + y * y + z * z;
-        let shear = 0.5 * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
-        (2.0 / 3.0 * (normal + shear)).sqrt()
+        equivalent_strain(&self.plastic_strain)
     }
+}
+
+/// √(2/3 e : e) with e the deviator of a strain.
+#[inline(always)]
+fn equivalent_strain(e: &Voigt) -> f64 {
+    let mean = tensor::trace(e) / 3.0;
+    let (x, y, z) = (e[0] - mean, e[1] - mean, e[2] - mean);
+    let normal = x * x + y * y + z * z;
+    let shear = 0.5 * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
+    (2.0 / 3.0 * (normal + shear)).sqrt()
+}
+
+/// σ₂ I + (σ₁ − σ₂) n₁ ⊗ n₁ + (σ₃ − σ₂) n₃ ⊗ n₃: exactly isotropic at the corners that are.
+#[inline(always)]
+fn compose(&[a, middle, c]: &[f64; 3], &[n, _, m]: &[Vec3; 3]) -> Voigt {
+    let (a, c) = (a - middle, c - middle);
+    let (p, q) = (n * a, m * c);
+    [
+        middle + (p.x * n.x + q.x * m.x),
+        middle + (p.y * n.y + q.y * m.y),
+        middle + (p.z * n.z + q.z * m.z),
+        p.x * n.y + q.x * m.y,
+        p.y * n.z + q.y * m.z,
+        p.z * n.x + q.z * m.x,
+    ]
 }
 
 impl MohrCoulomb {
@@ -252,45 +276,29 @@ impl MohrCoulomb {
             return PlasticStep::elastic(*trial);
         }
         let found = self.corners.return_map(&principal.values);
-        // σ₂ I + (σ₁ − σ₂) n₁ ⊗ n₁ + (σ₃ − σ₂) n₃ ⊗ n₃: exactly isotropic at the corners that are.
-        let [a, middle, c] = found.stress;
-        let (a, c) = (a - middle, c - middle);
-        let [n, _, m] = principal.directions;
-        let (p, q) = (n * a, m * c);
-        let stress = [
-            middle + (p.x * n.x + q.x * m.x),
-            middle + (p.y * n.y + q.y * m.y),
-            middle + (p.z * n.z + q.z * m.z),
-            p.x * n.y + q.x * m.y,
-            p.y * n.z + q.y * m.z,
-            p.z * n.x + q.z * m.x,
-        ];
+        let stress = compose(&found.stress, &principal.directions);
         let excess: Voigt = std::array::from_fn(|k| trial[k] - stress[k]);
         PlasticStep {
             stress,
             plastic_strain: self.compliance(&excess),
-            yielding: match found.corner {
-                Corner::Plane => YieldState::Shear,
-                Corner::UpperEdge | Corner::LowerEdge => YieldState::Edge,
-                Corner::Apex => YieldState::Apex,
-                _ => YieldState::Tension,
-            },
+            yielding: found.yielding,
             opening: found.opening,
         }
     }
 
     /// The cone inscribed in the pyramid and the sphere-like bound on σ₁: no principal values.
-    #[inline]
+    #[inline(always)]
     fn surely_elastic(&self, s: &Voigt) -> bool {
         let mean = tensor::trace(s) / 3.0;
         let (x, y, z) = (s[0] - mean, s[1] - mean, s[2] - mean);
         let j2 = 0.5 * (x * x + y * y + z * z) + (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
         let shear = self.corners.half_strength() - mean * self.corners.sin_friction();
         let tension = self.corners.tip() - mean;
-        shear >= 0.0
-            && tension >= 0.0
-            && j2 * (self.cone * self.cone) <= shear * shear
-            && 4.0 / 3.0 * j2 <= tension * tension
+        // No branches: this is asked of particles side by side.
+        (shear >= 0.0)
+            & (tension >= 0.0)
+            & (j2 * (self.cone * self.cone) <= shear * shear)
+            & (4.0 / 3.0 * j2 <= tension * tension)
     }
 
     /// Opened, and neither closed nor in shear since.
@@ -341,7 +349,7 @@ impl MohrCoulomb {
     }
 
     /// [`LinearElastic::update`] with its moduli at hand.
-    #[inline]
+    #[inline(always)]
     fn predictor(&self, stress: &Voigt, strain: &Voigt) -> Voigt {
         let (mean, shear) = (self.lame * tensor::trace(strain), self.shear_modulus);
         std::array::from_fn(|k| {
@@ -355,7 +363,7 @@ impl MohrCoulomb {
     }
 
     /// C⁻¹ σ, with engineering shear strains.
-    #[inline]
+    #[inline(always)]
     fn compliance(&self, stress: &Voigt) -> Voigt {
         let mean = tensor::trace(stress) / 3.0;
         let (half, bulk) = (0.5 / self.shear_modulus, mean / (3.0 * self.bulk_modulus));

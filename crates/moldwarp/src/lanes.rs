@@ -1,0 +1,258 @@
+//! Particles side by side: how the step uses the processor's vector instructions.
+//!
+//! A window is up to [`LANES`] neighbouring cells; slot k of it are their k-th particles, one a lane.
+//! Cells with most particles come first, so that the lanes of a slot are the first ones of the window. What
+//! a loop needs is copied to arrays of one number a lane; the loop over the lanes is plain scalar code,
+//! which the compiler turns into vector instructions. Each lane's arithmetic is that of the scalar code,
+//! operation for operation, and sums over lanes are made in the lanes' order, so that results have the same
+//! bits with any instruction set.
+
+use std::ops::Range;
+
+/// Cells of a window.
+pub const LANES: usize = 64;
+
+/// A number for each lane.
+pub type Lane = [f64; LANES];
+/// A symmetric tensor for each lane, component by component.
+pub type VoigtLanes = [Lane; 6];
+
+/// Instructions to compute with. Results are the same with all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Simd(Level);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
+enum Level {
+    Scalar,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl Default for Simd {
+    fn default() -> Simd {
+        Simd::best()
+    }
+}
+
+impl Simd {
+    /// Names, as `--simd` takes them.
+    pub const NAMES: [&'static str; 3] = ["scalar", "avx2", "avx512"];
+
+    /// The widest that this processor has.
+    pub fn best() -> Simd {
+        let named = Simd::NAMES.iter().rev().find_map(|name| Simd::named(name));
+        named.unwrap_or(Simd(Level::Scalar))
+    }
+
+    /// By its name, if this processor has it.
+    pub fn named(name: &str) -> Option<Simd> {
+        match name {
+            "scalar" => Some(Simd(Level::Scalar)),
+            #[cfg(target_arch = "x86_64")]
+            "avx2" => std::is_x86_feature_detected!("avx2").then_some(Simd(Level::Avx2)),
+            #[cfg(target_arch = "x86_64")]
+            "avx512" => (std::is_x86_feature_detected!("avx512f")
+                && std::is_x86_feature_detected!("avx512dq")
+                && std::is_x86_feature_detected!("avx512vl"))
+            .then_some(Simd(Level::Avx512)),
+            _ => None,
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    pub(crate) fn has_avx512(self) -> bool {
+        self.0 == Level::Avx512
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    pub(crate) fn has_avx2(self) -> bool {
+        self.0 == Level::Avx2
+    }
+}
+
+/// Compiles a function once for each instruction set, and calls the one that its first argument asks for.
+/// What it calls must be inlined, else it is compiled for the least processor.
+macro_rules! for_each_simd {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $body:block) => {
+        $(#[$doc])*
+        #[allow(clippy::too_many_arguments)]
+        $vis fn $name(simd: $crate::lanes::Simd, $($arg: $type),*) {
+            #[inline(always)]
+            #[allow(clippy::too_many_arguments)]
+            fn plain($($arg: $type),*) $body
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2")]
+                #[allow(clippy::too_many_arguments)]
+                fn avx2($($arg: $type),*) {
+                    plain($($arg),*);
+                }
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
+                #[allow(clippy::too_many_arguments)]
+                fn avx512($($arg: $type),*) {
+                    plain($($arg),*);
+                }
+                if simd.has_avx512() {
+                    // SAFETY: `Simd` is made only where the processor has it.
+                    return unsafe { avx512($($arg),*) };
+                }
+                if simd.has_avx2() {
+                    // SAFETY: as above.
+                    return unsafe { avx2($($arg),*) };
+                }
+            }
+            let _ = simd;
+            plain($($arg),*);
+        }
+    };
+}
+pub(crate) use for_each_simd;
+
+/// Cells side by side.
+#[derive(Clone, Debug)]
+pub struct Window {
+    /// First particle of the cell in each lane, and how many it has.
+    first: [u32; LANES],
+    count: [u32; LANES],
+    cell: [u32; LANES],
+    cells: usize,
+}
+
+impl Window {
+    /// Cells one after another, at most [`LANES`], with those first that have most particles.
+    #[inline]
+    pub fn new(cells: Range<usize>, offsets: &[u32]) -> Window {
+        /// Cells with more are put with these, in the order in which they come.
+        const MOST: usize = 31;
+        let mut window = Window {
+            first: [0; LANES],
+            count: [0; LANES],
+            cell: [0; LANES],
+            cells: cells.len(),
+        };
+        let count = |c: usize| offsets[c + 1] - offsets[c];
+        let mut start = [0u8; MOST + 2];
+        for c in cells.clone() {
+            start[MOST - (count(c) as usize).min(MOST) + 1] += 1;
+        }
+        for k in 0..=MOST {
+            start[k + 1] += start[k];
+        }
+        for c in cells {
+            let place = &mut start[MOST - (count(c) as usize).min(MOST)];
+            let lane = usize::from(*place);
+            *place += 1;
+            window.first[lane] = offsets[c];
+            window.count[lane] = count(c);
+            window.cell[lane] = c as u32;
+        }
+        window.sort_the_fullest(MOST as u32);
+        window
+    }
+
+    /// Brings cells with so many particles or more into order; there is seldom one.
+    fn sort_the_fullest(&mut self, many: u32) {
+        for lane in 1..self.cells {
+            if self.count[lane] < many {
+                return;
+            }
+            let mut at = lane;
+            while at > 0 && self.count[at - 1] < self.count[at] {
+                self.first.swap(at - 1, at);
+                self.count.swap(at - 1, at);
+                self.cell.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+    }
+
+    /// Cell in each lane.
+    #[inline]
+    pub fn cells(&self) -> &[u32] {
+        &self.cell[..self.cells]
+    }
+
+    /// The windows of a block of cells.
+    pub fn of(cells: Range<usize>, offsets: &[u32]) -> impl Iterator<Item = Window> {
+        let starts = cells.clone().step_by(LANES);
+        starts.map(move |start| Window::new(start..(start + LANES).min(cells.end), offsets))
+    }
+
+    /// Slots one after another: the particle in each of their lanes.
+    #[inline]
+    pub fn slots(&self, mut each: impl FnMut(&[u32])) {
+        let mut particles = self.first;
+        let mut lanes = self.cells;
+        for k in 0.. {
+            while lanes > 0 && self.count[lanes - 1] <= k {
+                lanes -= 1;
+            }
+            if lanes == 0 {
+                return;
+            }
+            each(&particles[..lanes]);
+            particles[..lanes].iter_mut().for_each(|p| *p += 1);
+        }
+    }
+}
+
+/// Lanes that a loop works on to have so many: vector instructions do eight at a time, and what is left over
+/// would be done one by one. What the additional ones hold is a number from before, and goes nowhere.
+#[inline(always)]
+pub fn whole(lanes: usize) -> usize {
+    lanes.next_multiple_of(8).min(LANES)
+}
+
+/// The number of each component in a lane.
+#[inline(always)]
+pub fn get<const N: usize>(lanes: &[Lane; N], l: usize) -> [f64; N] {
+    std::array::from_fn(|k| lanes[k][l])
+}
+
+/// The reverse of [`get`].
+#[inline(always)]
+pub fn set<const N: usize>(lanes: &mut [Lane; N], l: usize, values: [f64; N]) {
+    for k in 0..N {
+        lanes[k][l] = values[k];
+    }
+}
+
+/// `a` if the condition holds, else `b`. Unlike an `if`, it never becomes a jump, which would keep a loop
+/// over lanes scalar.
+#[inline(always)]
+pub fn either<T>(condition: bool, a: T, b: T) -> T {
+    std::hint::select_unpredictable(condition, a, b)
+}
+
+/// Σ over the lanes, in their order.
+pub fn sum(lanes: &Lane) -> f64 {
+    lanes.iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_particle_comes_once_in_its_cells_lane() {
+        let counts = [0, 3, 1, 40, 0, 33, 4, 4, 31, 35, 2];
+        let mut offsets = vec![5];
+        for n in counts {
+            offsets.push(offsets.last().unwrap() + n);
+        }
+        let window = Window::new(0..counts.len(), &offsets);
+        let mut seen = vec![0; *offsets.last().unwrap() as usize];
+        let mut slots = 0;
+        window.slots(|particles| {
+            for (&p, &c) in particles.iter().zip(window.cells()) {
+                assert!((offsets[c as usize]..offsets[c as usize + 1]).contains(&p));
+                seen[p as usize] += 1;
+            }
+            slots += 1;
+        });
+        assert_eq!(slots, 40);
+        assert!(seen[..5].iter().all(|&n| n == 0) && seen[5..].iter().all(|&n| n == 1));
+    }
+}

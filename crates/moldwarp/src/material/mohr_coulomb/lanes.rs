@@ -1,0 +1,217 @@
+//! The model's update of particles side by side: the same numbers as [`MohrCoulomb::update`], bit for bit.
+
+use super::super::{State, Strained};
+use super::{MohrCoulomb, MohrCoulombState, YieldState, compose, equivalent_strain};
+use crate::lanes::{LANES, Lane, Simd, VoigtLanes, either, for_each_simd, get, set, whole};
+use crate::tensor::{self, Voigt};
+
+/// Stresses to return, and what has become of them.
+struct Returned {
+    stress: VoigtLanes,
+    /// Number of a [`YieldState`].
+    yielding: Lane,
+    opening: Lane,
+    /// 1 where the stress has to be returned on its own.
+    odd: Lane,
+}
+
+impl MohrCoulomb {
+    pub(in super::super) fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
+        let mut sure: Lane = [0.0; LANES];
+        predict(simd, self, s, lanes, &mut sure);
+        s.plastic = false;
+        let (mut unsure, mut count) = ([0u8; LANES], 0);
+        for l in 0..lanes {
+            s.state[3][l] = 0.0;
+            if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
+                s.plastic = true;
+            } else if sure[l] == 0.0 {
+                unsure[count] = l as u8;
+                count += 1;
+            }
+        }
+        if count > 0 {
+            s.plastic |= self.return_lanes(simd, s, &unsure[..count]);
+        }
+        if s.plastic {
+            flow(simd, self, s, lanes);
+        }
+    }
+
+    /// A step of a particle that is open; says whether it is.
+    fn step_if_open(&self, s: &mut Strained, l: usize) -> bool {
+        let (stress, mut state) = (get(&s.before, l), state_of(get(&s.state, l)));
+        if !self.is_open(&stress, &state) {
+            return false;
+        }
+        let step = self.open_step(&stress, &get(&s.strain, l), state.opening);
+        state.opening = (state.opening + step.opening).max(0.0);
+        set(&mut s.stress, l, step.stress);
+        s.state[2][l] = state.opening;
+        s.state[3][l] = f64::from(step.yielding as u8);
+        true
+    }
+
+    /// Returns the predictors in these lanes; says whether any of them yields.
+    fn return_lanes(&self, simd: Simd, s: &mut Strained, unsure: &[u8]) -> bool {
+        let mut r = Returned {
+            stress: [[0.0; LANES]; 6],
+            yielding: [0.0; LANES],
+            opening: [0.0; LANES],
+            odd: [1.0; LANES],
+        };
+        for (i, &l) in unsure.iter().enumerate() {
+            set(&mut r.stress, i, get(&s.stress, l.into()));
+        }
+        if !self.corners.has_cutoff() {
+            return_side_by_side(simd, self, &mut r, unsure.len());
+        }
+        let mut any = false;
+        for (i, &l) in unsure.iter().enumerate() {
+            let l = usize::from(l);
+            if r.odd[i] != 0.0 {
+                let step = self.return_map(&get(&s.stress, l));
+                set(&mut r.stress, i, step.stress);
+                r.yielding[i] = f64::from(step.yielding as u8);
+                r.opening[i] = step.opening;
+            }
+            if r.yielding[i] > 0.0 {
+                any = true;
+                set(&mut s.stress, l, get(&r.stress, i));
+                s.state[2][l] = (s.state[2][l] + r.opening[i]).max(0.0);
+                s.state[3][l] = r.yielding[i];
+            }
+        }
+        any
+    }
+}
+
+fn state_of(state: State) -> MohrCoulombState {
+    MohrCoulombState {
+        plastic_shear: state[0],
+        plastic_volume: state[1],
+        opening: state[2],
+        yielding: YieldState::Elastic,
+    }
+}
+
+for_each_simd! {
+    /// Elastic predictors, and where they are surely admissible.
+    fn predict(model: &MohrCoulomb, s: &mut Strained, lanes: usize, sure: &mut Lane) {
+        for l in 0..whole(lanes) {
+            let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
+            sure[l] = either(model.surely_elastic(&trial), 1.0, 0.0);
+            set(&mut s.stress, l, trial);
+        }
+    }
+}
+
+for_each_simd! {
+    /// [`MohrCoulomb::return_map`] without a cut-off.
+    fn return_side_by_side(model: &MohrCoulomb, r: &mut Returned, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let (principal, ordinary) = tensor::principal_if_ordinary(&get(&r.stress, l));
+            let [largest, _, smallest] = principal.values;
+            let elastic = model.corners.shear_function(largest, smallest) <= 0.0;
+            let found = model.corners.return_without_cutoff(&principal.values);
+            set(&mut r.stress, l, compose(&found.stress, &principal.directions));
+            let yielding = f64::from(found.yielding as u8);
+            r.yielding[l] = either(elastic, 0.0, yielding);
+            r.opening[l] = found.opening;
+            r.odd[l] = either(ordinary, 0.0, 1.0);
+        }
+    }
+}
+
+for_each_simd! {
+    /// Plastic strain: the part of the increment that gave no stress, C⁻¹(σ_trial − σ).
+    fn flow(model: &MohrCoulomb, s: &mut Strained, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
+            let stress = get(&s.stress, l);
+            let excess: Voigt = std::array::from_fn(|k| trial[k] - stress[k]);
+            let strain = model.compliance(&excess);
+            s.state[0][l] += equivalent_strain(&strain);
+            s.state[1][l] += tensor::trace(&strain);
+            set(&mut s.plastic_strain, l, strain);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{MohrCoulomb, MohrCoulombParameters};
+    use super::*;
+    use crate::material::{LinearElastic, Material};
+    use crate::random::Random;
+
+    /// Random stresses, strains and openings, with and without a cut-off, dilation and cohesion.
+    #[test]
+    fn side_by_side_is_one_by_one() {
+        let mut random = Random::new(11);
+        let elastic = LinearElastic {
+            young_modulus: 1e7,
+            poisson_ratio: 0.3,
+        };
+        for n in 0..200 {
+            let parameters = MohrCoulombParameters {
+                cohesion: if n % 4 == 0 { 0.0 } else { 3e3 },
+                friction_angle: 0.5,
+                dilation_angle: if n % 3 == 0 { 0.2 } else { 0.0 },
+                tension_cutoff: (n % 5 == 1).then_some(1e3),
+            };
+            let parameters = MohrCoulombParameters {
+                tension_cutoff: parameters
+                    .tension_cutoff
+                    .filter(|_| parameters.cohesion > 0.0),
+                ..parameters
+            };
+            let model = Material::MohrCoulomb(MohrCoulomb::new(elastic, parameters).unwrap());
+            let scale = if n % 7 == 0 { 0.0 } else { 1e4 };
+            let lanes = 1 + (n * 13) % LANES;
+            let mut s = Strained::default();
+            for l in 0..lanes {
+                let open = random.within(0.0, 1.0) < 0.2;
+                let mut within =
+                    |a: f64| -> Voigt { std::array::from_fn(|_| random.within(-a, a)) };
+                set(
+                    &mut s.before,
+                    l,
+                    if open { [0.0; 6] } else { within(scale) },
+                );
+                set(&mut s.strain, l, within(1e-3));
+                s.state[2][l] = if open { random.within(0.0, 1e-3) } else { 0.0 };
+            }
+            let before = s.clone();
+            let run = |simd| {
+                let mut s = before.clone();
+                model.update_lanes(simd, &mut s, lanes);
+                s
+            };
+            for name in Simd::NAMES {
+                let Some(simd) = Simd::named(name) else {
+                    continue;
+                };
+                let s = run(simd);
+                for l in 0..lanes {
+                    let mut state = get(&before.state, l);
+                    let step =
+                        model.update(&get(&before.before, l), &get(&before.strain, l), &mut state);
+                    let bits =
+                        |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+                    assert_eq!(
+                        bits(&get(&s.stress, l)),
+                        bits(&step.stress),
+                        "{name} {n} {l}"
+                    );
+                    let close =
+                        |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15);
+                    assert!(close(&get(&s.state, l), &state), "{name} {n} {l}");
+                    if s.plastic {
+                        assert!(close(&get(&s.plastic_strain, l), &step.plastic_strain));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args as ClapArgs, Parser, Subcommand};
+use moldwarp::Simd;
 use std::path::PathBuf;
 
 /// Dynamic material point method for geomechanics
@@ -57,6 +58,13 @@ pub struct RunArgs {
     /// Replace an unfinished run; write beside files that are not moldwarp's
     #[arg(long)]
     pub force: bool,
+    /// Vector instructions to use; the best of this processor if not given. The results do not depend on
+    /// them
+    #[arg(long, value_parser = PossibleValuesParser::new(Simd::NAMES))]
+    pub simd: Option<String>,
+    /// Say where the time went, part by part of the step
+    #[arg(long)]
+    pub profile: bool,
 }
 
 #[derive(Debug, ClapArgs)]

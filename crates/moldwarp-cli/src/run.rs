@@ -4,6 +4,7 @@ use crate::args::{RunArgs, SceneArgs};
 use crate::exit::{Exit, of_stop};
 use crate::progress::Display;
 use crate::{Failure, say, text};
+use moldwarp::Simd;
 use moldwarp::measure::Energies;
 use moldwarp_io::output::summary::Compared;
 use moldwarp_io::run::{Outcome, RunOptions, run as compute};
@@ -12,8 +13,11 @@ use std::time::Duration;
 
 pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     let (scene, threads) = load(&args.scene)?;
-    let outcome = compute(scene, &options(args, threads), &mut Display::new(threads))?;
+    let outcome = compute(scene, &options(args, threads)?, &mut Display::new(threads))?;
     say(&conclusion(&outcome));
+    if args.profile {
+        say(&profile(&outcome));
+    }
     match outcome.stopped {
         None => Ok(Exit::Done),
         Some(stop) => Err(Failure::new(
@@ -28,12 +32,17 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
 }
 
 /// How the arguments want the run to be made.
-pub fn options(args: &RunArgs, threads: usize) -> RunOptions {
-    RunOptions {
+pub fn options(args: &RunArgs, threads: usize) -> Result<RunOptions, Failure> {
+    let simd = args.simd.as_ref().map(|name| {
+        Simd::named(name)
+            .ok_or_else(|| Failure::input(miette::miette!("this processor does not have {name}")))
+    });
+    Ok(RunOptions {
         out: args.out.clone(),
         force: args.force,
         threads,
-    }
+        simd: simd.transpose()?,
+    })
 }
 
 /// Sets the threads up and reads the scene. Returns the number of threads beside it.
@@ -54,6 +63,17 @@ pub fn start_threads(args: &SceneArgs) -> Result<usize, Failure> {
         .build_global()
         .map_err(|e| Failure::input(miette::miette!("cannot start {wanted} threads: {e}")))?;
     Ok(rayon::current_num_threads())
+}
+
+/// Where the time of the steps went, in the order of a step.
+fn profile(outcome: &Outcome) -> String {
+    let whole: Duration = outcome.profile.spent().map(|(_, time)| time).sum();
+    let share = |time: Duration| 100.0 * time.as_secs_f64() / whole.as_secs_f64();
+    let parts = outcome.profile.spent().map(|(name, time)| {
+        let (seconds, share) = (time.as_secs_f64(), share(time));
+        format!("  {name:<30} {seconds:9.2} s {share:5.1} %\n")
+    });
+    format!("time:\n{}", parts.collect::<String>())
 }
 
 /// How the run went and where to look.

@@ -7,7 +7,7 @@ use crate::boundary::{
 };
 use crate::contact::{ContactError, Contacts, Fields, is_rigid};
 use crate::lanes::Simd;
-use crate::measure::{Ledger, Probes, Scale, Watch};
+use crate::measure::{Ledger, Probes, Profile, Scale, Watch};
 use crate::mesh::{Driven, Follower, MotionError, Walls};
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{InheritedError, InitialStressError, Order, Particles, Seed, SeedingError};
@@ -201,6 +201,7 @@ pub struct Simulation {
     pub(crate) watch: Watch,
     pub(crate) scale: Scale,
     pub(crate) simd: Simd,
+    pub(crate) profile: Profile,
     /// Nodes before the last renumbering and their keys, kept so that no step allocates.
     spare_nodes: Vec<Node>,
     spare_numbers: Vec<u32>,
@@ -254,6 +255,7 @@ impl Simulation {
             watch: Watch::default(),
             scale: Scale::default(),
             simd: Simd::default(),
+            profile: Profile::default(),
             spare_nodes: Vec::new(),
             spare_numbers: Vec::new(),
         };
@@ -290,6 +292,11 @@ impl Simulation {
     /// the same.
     pub fn use_simd(&mut self, simd: Simd) {
         self.simd = simd;
+    }
+
+    /// Where the time has gone.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
     }
 
     /// Gives every particle the velocity (m/s) that `velocity` has at its position (m). For the

@@ -26,7 +26,7 @@ fn run(args: &PartArgs) -> Result<Exit, Failure> {
             "the scene or its mesh was changed while the sweep went on"
         )));
     }
-    let outcome = compute(scene, &options(&args.run, threads), &mut ())?;
+    let outcome = compute(scene, &options(&args.run, threads)?, &mut ())?;
     match outcome.stopped {
         None => Ok(Exit::Done),
         Some(stop) => Err(Failure::new(of_stop(&stop), miette::miette!("{stop}"))),

@@ -34,6 +34,7 @@ fn run_everything(folder: &Folder) {
         out: Some(folder.out()),
         force: false,
         threads: 1,
+        simd: None,
     };
     run(folder.read(&scene).unwrap(), &options, &mut ()).unwrap();
 }

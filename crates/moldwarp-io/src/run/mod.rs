@@ -26,9 +26,9 @@ use crate::output::hash::scene_hash;
 use crate::output::{FileError, Folder, FolderError, Projected, Summary, write_whole};
 use crate::scene::{Origin, Scene, SceneError};
 use log::Log;
-use moldwarp::measure::Energies;
+use moldwarp::measure::{Energies, Profile};
 use moldwarp::plan::Until;
-use moldwarp::{Plan, Simulation, Stop};
+use moldwarp::{Plan, Simd, Simulation, Stop};
 use recorder::Recorder;
 use std::io::Write;
 use std::path::PathBuf;
@@ -43,6 +43,8 @@ pub struct RunOptions {
     pub force: bool,
     /// The threads at work, for the record.
     pub threads: usize,
+    /// Instructions to compute with; the best of this processor if not given.
+    pub simd: Option<Simd>,
 }
 
 /// How far a run is.
@@ -105,6 +107,7 @@ pub struct Outcome {
     pub energies: Energies,
     /// The guard that stopped it, if one did.
     pub stopped: Option<Stop>,
+    pub profile: Profile,
     /// Comparisons that could not be made, a sentence each.
     pub problems: Vec<String>,
 }
@@ -166,6 +169,9 @@ pub fn run(
     let title = scene.plan.title.clone();
     let scene_hash = scene_hash(&scene.plan);
     let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
+    if let Some(simd) = options.simd {
+        sim.use_simd(simd);
+    }
     let columns = columns(&sim);
     let expected = Expected::read_all(&scene.compare, &columns)?;
     let (folder, replaced) = Folder::prepare(&path, &scene.folder, options.force)?;
@@ -212,6 +218,7 @@ pub fn run(
         summary,
         energies: whole::energies(&sim),
         stopped,
+        profile: sim.profile().clone(),
         problems,
     })
 }

@@ -4,17 +4,23 @@
 use super::state::moved;
 use super::{BLOCK, guard};
 use crate::Vec3;
+use crate::measure::Part;
 use crate::parallel::{ByCell, First, fold};
 use crate::simulation::{Simulation, Stop};
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     move_particles(sim);
+    sim.profile.lap(Part::Move);
     if sim.driven.moves() || sim.follower.moves() {
         move_mesh(sim)?;
     }
-    if locate(sim)? {
+    sim.profile.lap(Part::Mesh);
+    let crossed = locate(sim)?;
+    sim.profile.lap(Part::Locate);
+    if crossed {
         sim.reorder();
     }
+    sim.profile.lap(Part::Order);
     match sim.driven.degenerate(&sim.plan.mesh) {
         Some(element) => Err(sim.degenerate(element)),
         None => Ok(()),

@@ -44,6 +44,7 @@ pub use state::{CellForce, CellStrain, CellSums, Node};
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
 
+use crate::measure::Part;
 use crate::simulation::{Simulation, Stop};
 
 /// Cells or nodes that one thread works on at a time.
@@ -52,18 +53,24 @@ const BLOCK: usize = 256;
 impl Simulation {
     /// Advances positions, stresses and the mesh by `dt` seconds.
     pub(crate) fn drift(&mut self, dt: f64) -> Result<(), Stop> {
+        self.profile.lap(Part::Between);
         remap::run(self, dt);
+        self.profile.lap(Part::Remap);
         strain::run(self);
+        self.profile.lap(Part::Strain);
         stress::run(self);
+        self.profile.lap(Part::Stress);
         advance::run(self)
     }
 
     /// Advances velocities from `before` seconds before now to half the coming step after now.
     /// Returns that coming step: the stable one, at most `limit` (0 at the end of a stage).
     pub(crate) fn kick(&mut self, before: f64, limit: f64) -> Result<f64, Stop> {
+        self.profile.lap(Part::Between);
         self.gravity = self.plan.gravity * self.switches.gravity(self.clock.time);
         to_nodes::run(self, before);
         let stable = time_step::choose(self).map_err(|error| self.no_time_step(error))?;
+        self.profile.lap(Part::TimeStep);
         // A step that would leave a sliver of the stage is stretched to its end.
         let dt = if limit <= stable * (1.0 + 1e-6) {
             limit
@@ -76,8 +83,11 @@ impl Simulation {
             before == 0.0 && self.clock.new_constraints,
         );
         nodes::run(self, before, after);
+        self.profile.lap(Part::Nodes);
         correction::receive(self, before + after);
+        self.profile.lap(Part::Receive);
         to_particles::run(self, before, after);
+        self.profile.lap(Part::ToParticles);
         Ok(dt)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::correction::PAIRS;
 use super::{BLOCK, CellForce, CellSums, Node, smoothing};
+use crate::measure::Part;
 use crate::mesh::NONE;
 use crate::parallel::{ByCell, Sum, fold};
 use crate::plan::Integration;
@@ -16,8 +17,10 @@ const FILLED: f64 = 0.6;
 pub(super) fn run(sim: &mut Simulation, before: f64) {
     sum_cells(sim);
     sum_nodes(sim);
+    sim.profile.lap(Part::ToNodes);
     cell_forces(sim, before);
     smoothing::stresses(sim, before);
+    sim.profile.lap(Part::Forces);
 }
 
 /// Sums over the particles of each cell.

@@ -110,6 +110,12 @@ macro_rules! for_each_simd {
 }
 pub(crate) use for_each_simd;
 
+/// Items one after another, as many at a time as there are lanes.
+pub fn side_by_side(items: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let starts = items.clone().step_by(LANES);
+    starts.map(move |start| start..(start + LANES).min(items.end))
+}
+
 /// Cells side by side.
 #[derive(Clone, Debug)]
 pub struct Window {
@@ -176,8 +182,7 @@ impl Window {
 
     /// The windows of a block of cells.
     pub fn of(cells: Range<usize>, offsets: &[u32]) -> impl Iterator<Item = Window> {
-        let starts = cells.clone().step_by(LANES);
-        starts.map(move |start| Window::new(start..(start + LANES).min(cells.end), offsets))
+        side_by_side(cells).map(|cells| Window::new(cells, offsets))
     }
 
     /// Slots one after another: the particle in each of their lanes.

@@ -174,7 +174,18 @@ impl Sum for Smallest {
 
 /// The first of many indices; `u32::MAX` of none.
 #[derive(Clone, Copy, Debug)]
-pub struct First(pub u32);
+pub struct First(u32);
+
+impl First {
+    /// This index is one of them.
+    pub fn note(&mut self, index: usize) {
+        self.0 = self.0.min(index as u32);
+    }
+
+    pub fn get(self) -> Option<usize> {
+        (self.0 != u32::MAX).then_some(self.0 as usize)
+    }
+}
 
 impl Default for First {
     fn default() -> First {

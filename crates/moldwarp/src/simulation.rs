@@ -13,7 +13,10 @@ use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{InheritedError, InitialStressError, Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{Active, CellForce, CellStrain, CellSums, Grid, Node, Reference, TimeStepError};
+use crate::step::{
+    Active, CellForce, CellPairs, CellStrain, CellStress, CellSums, Grid, Node, Reference,
+    TimeStepError,
+};
 use crate::switches::Switches;
 
 /// Why a plan cannot be computed.
@@ -165,8 +168,16 @@ pub(crate) struct Clock {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cells {
     pub sums: Vec<CellSums>,
+    pub pairs: Vec<CellPairs>,
+    pub stresses: Vec<CellStress>,
     pub forces: Vec<CellForce>,
+    /// Forces on the cell's nodes, N.
+    pub nodal: Vec<[Vec3; 4]>,
+    /// Σ_j M_ij (w_i − w_j) for each node, w being accelerations (N) or averages (kg m/s).
+    pub exchange: Vec<[Vec3; 4]>,
     pub strains: Vec<CellStrain>,
+    /// What is smoothed times w_e, and w_e.
+    pub weights: Vec<[f64; 2]>,
 }
 
 /// A plan, the state of its bodies, and the books.
@@ -385,7 +396,12 @@ impl Simulation {
         }
         let cells = self.active.elements.len();
         self.cells.sums.resize(cells, CellSums::default());
+        self.cells.pairs.resize(cells, CellPairs::default());
+        self.cells.stresses.resize(cells, CellStress::default());
         self.cells.forces.resize(cells, CellForce::default());
+        self.cells.nodal.resize(cells, [Vec3::ZERO; 4]);
+        self.cells.exchange.resize(cells, [Vec3::ZERO; 4]);
+        self.cells.weights.resize(cells, [0.0; 2]);
         self.cells.strains.resize(cells, CellStrain::default());
     }
 

@@ -1,23 +1,28 @@
 //! Stages 7 and 8: particles move with the nodes, the mesh moves with its driver and its boundaries,
 //! and each particle's element is found anew.
 
+use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, interpolate, load_nodes};
 use super::state::moved;
 use super::{BLOCK, guard};
 use crate::Vec3;
+use crate::contact::{Contacts, Fields};
+use crate::lanes::{self, LANES, Lane, Window, either, for_each_simd, get, set, whole};
 use crate::measure::Part;
-use crate::parallel::{ByCell, First, fold};
+use crate::mesh::Mesh;
+use crate::parallel::{ByCell, First, Sum, fold};
 use crate::simulation::{Simulation, Stop};
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
-    move_particles(sim);
+    let stays = !(sim.driven.moves() || sim.follower.moves());
+    let mut crossing = move_particles(sim, stays);
     sim.profile.lap(Part::Move);
-    if sim.driven.moves() || sim.follower.moves() {
+    if !stays {
         move_mesh(sim)?;
+        sim.profile.lap(Part::Mesh);
+        crossing = locate(sim);
+        sim.profile.lap(Part::Locate);
     }
-    sim.profile.lap(Part::Mesh);
-    let crossed = locate(sim)?;
-    sim.profile.lap(Part::Locate);
-    if crossed {
+    if check(sim, crossing)? {
         sim.reorder();
     }
     sim.profile.lap(Part::Order);
@@ -58,8 +63,87 @@ fn move_mesh(sim: &mut Simulation) -> Result<(), Stop> {
     }
 }
 
-/// x_p += Σ N_i Δu_i (Jassim et al. Eq. 9).
-fn move_particles(sim: &mut Simulation) {
+/// Cells and particles side by side.
+struct Side {
+    shapes: Shapes,
+    moved: Corners,
+    position: [Lane; 3],
+    displacement: [Lane; 3],
+    mass: Lane,
+    work: Lane,
+    /// 1 where a particle has left its element as it was.
+    left: Lane,
+}
+
+for_each_simd! {
+    fn go_along(side: &mut Side, gravity: Vec3, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let mut x = Vec3::from_array(get(&side.position, l));
+            let step = interpolate(side.shapes.at(l, x), all_corners(&side.moved, l));
+            x += step;
+            set(&mut side.position, l, x.to_array());
+            let displacement = Vec3::from_array(get(&side.displacement, l)) + step;
+            set(&mut side.displacement, l, displacement.to_array());
+            side.work[l] += side.mass[l] * gravity.dot(step);
+            let n = side.shapes.at(l, x);
+            let inside = (n[0] >= 0.0) & (n[1] >= 0.0) & (n[2] >= 0.0) & (n[3] >= 0.0);
+            side.left[l] = either(inside, 0.0, 1.0);
+        }
+    }
+}
+
+/// Particles that have come to another element, by their places; the first of each kind.
+#[derive(Clone, Copy, Debug, Default)]
+struct Crossing {
+    /// Out of the mesh.
+    outside: First,
+    /// Into another element.
+    crossed: First,
+    /// Across a face that they must not pass: they are still in the old element.
+    passed: First,
+}
+
+impl Sum for Crossing {
+    fn plus(self, other: Crossing) -> Crossing {
+        Crossing {
+            outside: self.outside.plus(other.outside),
+            crossed: self.crossed.plus(other.crossed),
+            passed: self.passed.plus(other.passed),
+        }
+    }
+}
+
+/// What it takes to find a particle's element.
+struct Search<'a> {
+    mesh: &'a Mesh,
+    fields: &'a Fields,
+    contacts: &'a Contacts,
+    body: &'a [u16],
+}
+
+impl Search<'_> {
+    /// Walks particle `p` to its element.
+    #[inline]
+    fn walk(&self, p: usize, x: Vec3, element: &mut u32, crossing: &mut Crossing) {
+        match self.mesh.walk(*element, x) {
+            Some(found) if found == *element => {}
+            Some(found) => {
+                let field = self.fields.of(self.body[p]);
+                if self.contacts.blocks(field, *element, found) {
+                    crossing.passed.note(p);
+                } else {
+                    *element = found;
+                    crossing.crossed.note(p);
+                }
+            }
+            None => crossing.outside.note(p),
+        }
+    }
+}
+
+/// x_p += Σ N_i Δu_i (Jassim et al. Eq. 9). In a mesh that stays, each particle's element is found on the
+/// way.
+fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
     let Simulation {
         plan,
         particles,
@@ -67,37 +151,74 @@ fn move_particles(sim: &mut Simulation) {
         nodes,
         ledger,
         gravity,
+        fields,
+        contacts,
+        simd,
         ..
     } = sim;
     let (mesh, active, nodes, gravity) = (&plan.mesh, &*active, &nodes[..], *gravity);
-    let mass = &particles.mass;
-    let arrays = (&mut particles.position[..], &mut particles.displacement[..]);
+    let (mass, simd) = (&particles.mass, *simd);
+    let search = Search {
+        mesh,
+        fields,
+        contacts,
+        body: &particles.body,
+    };
+    let arrays = (
+        &mut particles.position[..],
+        &mut particles.displacement[..],
+        &mut particles.element[..],
+    );
     let block = ByCell::new(&active.offsets, arrays);
-    let lifted = fold(block, BLOCK, &|block: ByCell<(
-        &mut [Vec3],
-        &mut [Vec3],
-    )>| {
+    type Arrays<'a> = (&'a mut [Vec3], &'a mut [Vec3], &'a mut [u32]);
+    let (lifted, crossing) = fold(block, BLOCK, &|block: ByCell<Arrays>| {
         let first = block.first();
-        let (positions, displacements) = block.particles;
-        let mut work = 0.0;
-        for c in block.cells {
-            let e = active.elements[c] as usize;
-            let moved = active.cell_nodes[c].map(|n| nodes[n as usize].moved);
-            for p in active.offsets[c] as usize..active.offsets[c + 1] as usize {
-                let n = mesh.barycentric(e, positions[p - first]);
-                let step: Vec3 = (0..4).map(|i| moved[i] * n[i]).sum();
-                positions[p - first] += step;
-                displacements[p - first] += step;
-                work += mass[p] * gravity.dot(step);
+        let (positions, displacements, elements) = block.particles;
+        let vector = [[0.0; LANES]; 3];
+        let mut side = Side {
+            shapes: Shapes::default(),
+            moved: NO_CORNERS,
+            position: vector,
+            displacement: vector,
+            mass: [0.0; LANES],
+            work: [0.0; LANES],
+            left: [0.0; LANES],
+        };
+        let mut crossing = Crossing::default();
+        for window in Window::of(block.cells, &active.offsets) {
+            for (l, &c) in window.cells().iter().enumerate() {
+                let c = c as usize;
+                side.shapes.load(l, mesh, active.elements[c] as usize);
+                load_nodes(&mut side.moved, l, active, c, nodes, |n| n.moved);
             }
+            window.slots(|slot| {
+                for (l, &p) in slot.iter().enumerate() {
+                    let own = p as usize - first;
+                    set(&mut side.position, l, positions[own].to_array());
+                    set(&mut side.displacement, l, displacements[own].to_array());
+                    side.mass[l] = mass[p as usize];
+                }
+                side.mass[slot.len()..whole(slot.len())].fill(0.0);
+                go_along(simd, &mut side, gravity, slot.len());
+                for (l, &p) in slot.iter().enumerate() {
+                    let own = p as usize - first;
+                    positions[own] = Vec3::from_array(get(&side.position, l));
+                    displacements[own] = Vec3::from_array(get(&side.displacement, l));
+                    if stays && side.left[l] != 0.0 {
+                        let x = positions[own];
+                        search.walk(p as usize, x, &mut elements[own], &mut crossing);
+                    }
+                }
+            });
         }
-        work
+        (lanes::sum(&side.work), crossing)
     });
     ledger.gravity_work(lifted);
+    crossing
 }
 
-/// Walks each particle to its element; says whether any has a new one.
-fn locate(sim: &mut Simulation) -> Result<bool, Stop> {
+/// Walks each particle to its element in a mesh that has moved.
+fn locate(sim: &mut Simulation) -> Crossing {
     let Simulation {
         plan,
         particles,
@@ -106,34 +227,31 @@ fn locate(sim: &mut Simulation) -> Result<bool, Stop> {
         contacts,
         ..
     } = sim;
-    let (mesh, position, body) = (&plan.mesh, &particles.position, &particles.body);
-    let (fields, contacts) = (&*fields, &*contacts);
+    let search = Search {
+        mesh: &plan.mesh,
+        fields,
+        contacts,
+        body: &particles.body,
+    };
+    let position = &particles.position;
     let block = ByCell::new(&active.offsets, &mut particles.element[..]);
-    let (outside, (crossed, passed)) = fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {
+    fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {
         let first = block.first();
-        let (mut outside, mut crossed) = (First::default(), First::default());
-        let mut passed = First::default();
+        let mut crossing = Crossing::default();
         for (k, element) in block.particles.iter_mut().enumerate() {
-            let p = first + k;
-            match mesh.walk(*element, position[p]) {
-                Some(found) if found == *element => {}
-                Some(found) if contacts.blocks(fields.of(body[p]), *element, found) => {
-                    passed.0 = passed.0.min(p as u32);
-                }
-                Some(found) => {
-                    *element = found;
-                    crossed.0 = crossed.0.min(p as u32);
-                }
-                None => outside.0 = outside.0.min(p as u32),
-            }
+            search.walk(first + k, position[first + k], element, &mut crossing);
         }
-        (outside, (crossed, passed))
-    });
-    if outside.0 != u32::MAX {
-        return Err(sim.left_the_mesh(outside.0 as usize));
+        crossing
+    })
+}
+
+/// Deals with what must not be; says whether any particle has a new element.
+fn check(sim: &mut Simulation, crossing: Crossing) -> Result<bool, Stop> {
+    if let Some(p) = crossing.outside.get() {
+        return Err(sim.left_the_mesh(p));
     }
-    let mut crossed = crossed.0 != u32::MAX;
-    if passed.0 != u32::MAX {
+    let mut crossed = crossing.crossed.get().is_some();
+    if crossing.passed.get().is_some() {
         crossed |= guard::put_back(sim)?;
     }
     Ok(crossed)

@@ -19,8 +19,10 @@
 //! compression at 2θ = 1.94 (Kuhn tetrahedra of cubes, ν = 0, Courant number 0.5); we take 1.6.
 //! (Averaging lumped and consistent mass for phase accuracy: Goudreau and Taylor 1973.)
 
-use super::{Active, BLOCK, CellSums, Node};
+use super::shapes::{Corners, NO_CORNERS, all_corners, load_nodes, set_corner};
+use super::{Active, BLOCK, Node};
 use crate::Vec3;
+use crate::lanes::{LANES, Lane, for_each_simd, set, side_by_side, whole};
 use crate::parallel::fold;
 use crate::plan::MassMatrix;
 use crate::simulation::Simulation;
@@ -39,8 +41,33 @@ pub(super) fn stiffening(mass: MassMatrix) -> f64 {
     }
 }
 
-/// The pairs of a cell's nodes, in the order of [`CellSums::pairs`].
+/// The pairs of a cell's nodes, in the order of [`CellPairs`](super::CellPairs).
 pub(super) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+
+/// Cells side by side.
+struct Side {
+    w: Corners,
+    pairs: [Lane; 6],
+    sum: Corners,
+}
+
+for_each_simd! {
+    fn flow(side: &mut Side, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let w = all_corners(&side.w, l);
+            let mut sum = [Vec3::ZERO; 4];
+            for k in 0..6 {
+                let (i, j) = PAIRS[k];
+                let flux = (w[i] - w[j]) * side.pairs[k][l];
+                sum[i] += flux;
+                sum[j] -= flux;
+            }
+            for i in 0..4 {
+                set_corner(&mut side.sum, l, i, sum[i]);
+            }
+        }
+    }
+}
 
 /// Σ_j M_ij (w_i − w_j) of each cell, for [`change`]. Returns θ.
 pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -> f64 {
@@ -51,21 +78,29 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
         active,
         nodes,
         cells,
+        simd,
         ..
     } = sim;
-    let (active, nodes) = (&*active, &nodes[..]);
-    let items = (0..active.elements.len(), &mut cells.sums[..]);
+    let (active, nodes, pairs, simd) = (&*active, &nodes[..], &cells.pairs[..], *simd);
+    let items = (0..active.elements.len(), &mut cells.exchange[..]);
     fold(items, BLOCK, &|(range, sums): (
         Range<usize>,
-        &mut [CellSums],
+        &mut [[Vec3; 4]],
     )| {
-        for (c, sum) in range.zip(sums) {
-            let w = active.cell_nodes[c].map(|n| w(&nodes[n as usize]));
-            sum.exchange = [Vec3::ZERO; 4];
-            for (&(i, j), &mass) in PAIRS.iter().zip(&sum.pairs) {
-                let flux = (w[i] - w[j]) * mass;
-                sum.exchange[i] += flux;
-                sum.exchange[j] -= flux;
+        let first = range.start;
+        let mut side = Side {
+            w: NO_CORNERS,
+            pairs: [[0.0; LANES]; 6],
+            sum: NO_CORNERS,
+        };
+        for window in side_by_side(range) {
+            for (l, c) in window.clone().enumerate() {
+                load_nodes(&mut side.w, l, active, c, nodes, &w);
+                set(&mut side.pairs, l, pairs[c]);
+            }
+            flow(simd, &mut side, window.len());
+            for (l, c) in window.enumerate() {
+                sums[c - first] = all_corners(&side.sum, l);
             }
         }
     });
@@ -79,14 +114,14 @@ pub(super) fn change(
     slot: usize,
     mass: f64,
     active: &Active,
-    sums: &[CellSums],
+    exchange: &[[Vec3; 4]],
 ) -> Vec3 {
     if theta == 0.0 || mass == 0.0 {
         return Vec3::ZERO;
     }
     let attached = active.attached(slot).iter();
     let sum: Vec3 = attached
-        .map(|&(c, i)| sums[c as usize].exchange[i as usize])
+        .map(|&(c, i)| exchange[c as usize][i as usize])
         .sum();
     sum * (theta / mass)
 }
@@ -102,7 +137,7 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         ledger,
         ..
     } = sim;
-    let (active, sums, constraints) = (&*active, &cells.sums[..], &*constraints);
+    let (active, exchange, constraints) = (&*active, &cells.exchange[..], &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
     let gain = fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
@@ -110,7 +145,7 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
     )| {
         let mut gain = 0.0;
         for (slot, node) in slots.zip(nodes) {
-            let change = change(theta, slot, node.mass, active, sums);
+            let change = change(theta, slot, node.mass, active, exchange);
             node.received = node.acceleration
                 + match constraints.of(active.nodes[slot]) {
                     Some(constraint) => constraint.free * change,

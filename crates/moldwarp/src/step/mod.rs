@@ -29,6 +29,7 @@ mod nodes;
 mod reference;
 mod remap;
 mod rigid;
+mod shapes;
 mod smoothing;
 mod state;
 mod strain;
@@ -40,7 +41,7 @@ mod to_particles;
 pub use active::{Active, Grid};
 pub(crate) use nodes::unheld;
 pub(crate) use reference::Reference;
-pub use state::{CellForce, CellStrain, CellSums, Node};
+pub use state::{CellForce, CellPairs, CellStrain, CellStress, CellSums, Node};
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
 

@@ -4,10 +4,8 @@
 use super::{Active, BLOCK, Node, contact, rigid};
 use crate::boundary::AbsorbingNode;
 use crate::measure::{DriftWork, Forces};
-use crate::mesh::Mesh;
 use crate::parallel::fold;
 use crate::simulation::{Cells, Simulation};
-use crate::tensor;
 use crate::{Mat3, Vec3};
 use std::ops::Range;
 
@@ -19,7 +17,6 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     apply_loads(sim);
     let damping = sim.local_damping();
     let Simulation {
-        plan,
         active,
         nodes,
         cells,
@@ -30,7 +27,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         ..
     } = sim;
     let weighs = reference.is_some();
-    let (active, mesh, gravity, cells) = (&*active, &plan.mesh, *gravity, &*cells);
+    let (active, gravity, cells) = (&*active, *gravity, &*cells);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
@@ -49,7 +46,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 continue;
             }
             let mesh_node = active.nodes[slot];
-            let internal = internal_force(slot, active, mesh, cells);
+            let internal = internal_force(slot, active, cells);
             node.weighed = match weighs {
                 true => weighed(slot, active, cells),
                 false => node.mass,
@@ -105,13 +102,8 @@ fn book(sim: &mut Simulation, drifted: bool) {
 }
 
 /// −Σ S ∇N_i of a node, N.
-fn internal_force(slot: usize, active: &Active, mesh: &Mesh, cells: &Cells) -> Vec3 {
-    let force = |&(c, local): &(u32, u8)| {
-        let force = &cells.forces[c as usize];
-        let gradient = mesh.all_gradients(active.elements[c as usize] as usize)[local as usize];
-        let stress = std::array::from_fn(|k| force.stress[k] + force.viscous[k]);
-        -tensor::times(&stress, gradient)
-    };
+fn internal_force(slot: usize, active: &Active, cells: &Cells) -> Vec3 {
+    let force = |&(c, local): &(u32, u8)| cells.nodal[c as usize][local as usize];
     active.attached(slot).iter().map(force).sum()
 }
 
@@ -131,7 +123,7 @@ pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
         sim.slots(mesh_node)
             .map(|slot| {
                 let node = &sim.nodes[slot];
-                let internal = internal_force(slot, &sim.active, &sim.plan.mesh, &sim.cells);
+                let internal = internal_force(slot, &sim.active, &sim.cells);
                 let weighed = match sim.reference {
                     Some(_) => weighed(slot, &sim.active, &sim.cells),
                     None => node.mass,

@@ -11,7 +11,7 @@
 //! (Well-balanced schemes: the idea is that of Greenberg and Leroux 1996.) The difference between
 //! this weight and that of the particles goes to `integration` in the ledger.
 
-use super::CellSums;
+use super::CellStress;
 use super::to_nodes::Around;
 use crate::Vec3;
 use crate::mesh::Mesh;
@@ -39,7 +39,7 @@ pub(super) struct Scaled<'a> {
 impl Reference {
     /// Adds a particle to its cell's sums.
     #[inline]
-    pub fn add(&self, sum: &mut CellSums, body: usize, x: Vec3, volume: f64) {
+    pub fn add(&self, sum: &mut CellStress, body: usize, x: Vec3, volume: f64) {
         if let Some(k0) = self.k0[body] {
             let vertical = self.ground.vertical(x) * volume;
             sum.reference[0] += vertical;

@@ -77,7 +77,7 @@ fn correct(sim: &mut Simulation, theta: f64) {
         constraints,
         ..
     } = sim;
-    let (active, sums, constraints) = (&*active, &cells.sums[..], &*constraints);
+    let (active, exchange, constraints) = (&*active, &cells.exchange[..], &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
@@ -85,7 +85,7 @@ fn correct(sim: &mut Simulation, theta: f64) {
     )| {
         for (slot, node) in slots.zip(nodes) {
             node.grid_velocity = node.average;
-            node.grid_velocity += correction::change(theta, slot, node.mass, active, sums);
+            node.grid_velocity += correction::change(theta, slot, node.mass, active, exchange);
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =
                     constraint.free * node.grid_velocity + constraints.prescribed(constraint);

@@ -22,23 +22,24 @@
 //! and frictional soil becomes too weak, the more the finer the mesh (validation case
 //! `collapse-smoothing`). It is offered for comparison and is not the default.
 
-use super::{BLOCK, CellForce, CellSums, Node};
+use super::{BLOCK, CellForce, CellSums, Node, to_nodes};
+use crate::Vec3;
 use crate::parallel::fold;
 use crate::plan::Smoothing;
-use crate::simulation::{Cells, Simulation};
+use crate::simulation::Simulation;
 use crate::tensor;
 use std::ops::Range;
 
 /// w_e, m³.
 #[inline]
-fn weight(force: &CellForce, sum: &CellSums, volume: f64) -> f64 {
+pub(super) fn weight(force: &CellForce, sum: &CellSums, closed: f64, volume: f64) -> f64 {
     let weight = if force.filled {
         volume
     } else {
         sum.volume.min(volume)
     };
-    if sum.closed < sum.volume {
-        weight * sum.closed / sum.volume
+    if closed < sum.volume {
+        weight * closed / sum.volume
     } else {
         weight
     }
@@ -58,43 +59,34 @@ pub(super) fn strains(sim: &mut Simulation) {
     if sim.plan.numerics.smoothing == Smoothing::Off {
         return;
     }
-    sum_at_nodes(
-        sim,
-        |cells, c, weight| cells.strains[c].volumetric * weight,
-        |node, sum, weights| node.volumetric = if weights > 0.0 { sum / weights } else { 0.0 },
-    );
+    sum_at_nodes(sim, |node, sum, weights| {
+        node.volumetric = if weights > 0.0 { sum / weights } else { 0.0 }
+    });
 }
 
-/// Sums a value of the attached cells, given their weight w_e, and the weights themselves at each
-/// node, and has `store` make something of both.
-fn sum_at_nodes(
-    sim: &mut Simulation,
-    value: impl Fn(&Cells, usize, f64) -> f64 + Sync,
-    store: impl Fn(&mut Node, f64, f64) + Sync,
-) {
+/// Sums a value of the attached cells and their weight w_e, both in `weights`, at each node, and has
+/// `store` make something of them.
+fn sum_at_nodes(sim: &mut Simulation, store: impl Fn(&mut Node, f64, f64) + Sync) {
     let Simulation {
-        plan,
         active,
         nodes,
         cells,
         ..
     } = sim;
-    let (mesh, active, cells) = (&plan.mesh, &*active, &*cells);
+    let (active, weights) = (&*active, &cells.weights[..]);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
         for (slot, node) in slots.zip(nodes) {
-            let (mut sum, mut weights) = (0.0, 0.0);
+            let (mut sum, mut all) = (0.0, 0.0);
             for &(c, _) in active.attached(slot) {
-                let c = c as usize;
-                let volume = mesh.volumes[active.elements[c] as usize];
-                let weight = weight(&cells.forces[c], &cells.sums[c], volume);
-                sum += value(cells, c, weight);
-                weights += weight;
+                let [value, weight] = weights[c as usize];
+                sum += value;
+                all += weight;
             }
-            store(node, sum, weights);
+            store(node, sum, all);
         }
     });
 }
@@ -105,15 +97,17 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     if sim.plan.numerics.smoothing != Smoothing::Conjugate {
         return;
     }
+    for c in 0..sim.cells.forces.len() {
+        let (force, closed) = (&sim.cells.forces[c], sim.cells.stresses[c].closed);
+        let volume = sim.plan.mesh.volumes[sim.active.elements[c] as usize];
+        let weight = weight(force, &sim.cells.sums[c], closed, volume);
+        sim.cells.weights[c] = [tensor::trace(&force.stress), weight];
+    }
     // q_n: a trace is three times the mean, and a quarter goes to each node.
-    sum_at_nodes(
-        sim,
-        |cells, c, _| tensor::trace(&cells.forces[c].stress),
-        |node, sum, weights| {
-            let whole = 12.0 * weights;
-            node.mean_stress = if weights > 0.0 { sum / whole } else { 0.0 };
-        },
-    );
+    sum_at_nodes(sim, |node, sum, weights| {
+        let whole = 12.0 * weights;
+        node.mean_stress = if weights > 0.0 { sum / whole } else { 0.0 };
+    });
     let Simulation {
         plan,
         active,
@@ -122,26 +116,32 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         ledger,
         ..
     } = sim;
-    let (mesh, active, nodes, sums) = (&plan.mesh, &*active, &nodes[..], &cells.sums[..]);
-    let items = (0..sums.len(), &mut cells.forces[..]);
-    let work = fold(items, BLOCK, &|(range, forces): (
+    let (mesh, active, nodes, weights) = (&plan.mesh, &*active, &nodes[..], &cells.weights[..]);
+    let items = (
+        0..weights.len(),
+        &mut cells.forces[..],
+        &mut cells.nodal[..],
+    );
+    let work = fold(items, BLOCK, &|(range, forces, nodal): (
         Range<usize>,
         &mut [CellForce],
+        &mut [[Vec3; 4]],
     )| {
-        let mut work = [0.0; 3];
-        for (c, force) in range.zip(forces) {
+        let mut work = 0.0;
+        for ((c, force), nodal) in range.zip(forces).zip(nodal) {
             let e = active.elements[c] as usize;
             let corners = active.cell_nodes[c].map(|n| &nodes[n as usize]);
             let mean: f64 = corners.iter().map(|n| n.mean_stress).sum();
-            let weight = weight(force, &sums[c], mesh.volumes[e]);
-            force.smoothed = mean * weight - tensor::trace(&force.stress) / 3.0;
+            force.smoothed = mean * weights[c][1] - tensor::trace(&force.stress) / 3.0;
             (0..3).for_each(|k| force.stress[k] += force.smoothed);
             if before > 0.0 {
-                let gradient = super::strain::gradient(mesh, e, corners.map(|n| n.moved));
-                work[0] += force.half_smoothing_work(&gradient);
+                let moved = corners.map(|n| n.moved);
+                let gradient = super::strain::gradient(&mesh.gradients[e], moved);
+                work += force.half_smoothing_work(&gradient);
             }
+            *nodal = to_nodes::nodal(force, mesh, e);
         }
         work
     });
-    ledger.stress_smoothing_work(work[0]);
+    ledger.stress_smoothing_work(work);
 }

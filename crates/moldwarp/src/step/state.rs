@@ -1,7 +1,7 @@
 //! What the step keeps per node and per cell.
 
 use super::Active;
-use crate::tensor::{self, Voigt};
+use crate::tensor::Voigt;
 use crate::{Mat3, Vec3};
 
 /// A node that particles touch. Forces in N, work in J.
@@ -42,23 +42,27 @@ pub struct Node {
     pub mean_stress: f64,
 }
 
-/// Sums over the particles of a cell.
+/// Sums over the particles of a cell that its nodes gather.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellSums {
     /// Σ m_p N_i for each node, kg.
     pub mass: [f64; 4],
     /// Σ m_p v_p N_i for each node, kg m/s; after stage 3 with the new velocities.
     pub momentum: [Vec3; 4],
-    /// M_ij = Σ m_p N_i N_j of each pair of nodes: 01, 02, 03, 12, 13, 23, kg.
-    pub pairs: [f64; 6],
-    /// Σ_j M_ij (w_i − w_j) for each node, w being accelerations (N) or averages (kg m/s).
-    pub exchange: [Vec3; 4],
-    /// Σ σ_p V_p, J.
-    pub stress: Voigt,
     /// Σ V_p, m³.
     pub volume: f64,
     /// Σ V_p without what has opened in tension, m³: it judges filling.
     pub solid: f64,
+}
+
+/// M_ij = Σ m_p N_i N_j of each pair of a cell's nodes: 01, 02, 03, 12, 13, 23, kg.
+pub type CellPairs = [f64; 6];
+
+/// Sums over the particles of a cell that make its stress.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CellStress {
+    /// Σ σ_p V_p, J.
+    pub stress: Voigt,
     /// Σ V_p of particles that are not separated, m³.
     pub closed: f64,
     /// Σ λ V_p and Σ G V_p, J.
@@ -85,16 +89,6 @@ pub struct CellForce {
 }
 
 impl CellForce {
-    /// Half the work on a displacement gradient, for the ledger: [of the particles' stresses
-    /// Σ σ_p V_p, what the cell's stress does beyond that, of the viscous part], J. What smoothing
-    /// has added is left out.
-    pub(super) fn half_work(&self, particles: &Voigt, gradient: &Mat3) -> [f64; 3] {
-        let half = |stress: &Voigt| 0.5 * tensor::contract(stress, gradient);
-        let own = half(particles);
-        let all = half(&self.stress) - self.half_smoothing_work(gradient);
-        [own, all - own, half(&self.viscous)]
-    }
-
     /// Half the work of what smoothing has added, J.
     pub(super) fn half_smoothing_work(&self, gradient: &Mat3) -> f64 {
         0.5 * self.smoothed * (gradient.x_axis.x + gradient.y_axis.y + gradient.z_axis.z)
@@ -126,9 +120,8 @@ pub(super) fn moved<'a>(active: &'a Active, nodes: &'a [Node]) -> impl Fn(u32) -
 /// Deformation of a cell in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellStrain {
-    /// ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step.
-    pub gradient: Mat3,
-    /// The same in the middle of the step, ∇Δu (I + ½∇Δu)⁻¹: a rigid rotation has none of it but
+    /// With ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step, the same in its middle,
+    /// ∇Δu (I + ½∇Δu)⁻¹: a rigid rotation has none of it but
     /// spin, and its trace is the logarithmic volume strain to third order.
     pub midpoint: Mat3,
     /// Trace of `midpoint`.

@@ -63,7 +63,7 @@ pub(crate) fn critical(sim: &Simulation) -> f64 {
         for c in range {
             let sum = &cells.sums[c];
             let modulus = if sum.volume > 0.0 {
-                sum.wave_modulus
+                cells.stresses[c].wave_modulus
             } else {
                 stiffest
             };

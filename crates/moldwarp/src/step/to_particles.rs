@@ -1,10 +1,44 @@
 //! Stage 3: velocities of particles, v_p += h Σ N_i a_i (Jassim et al. Eq. 8), and the momenta
 //! of the updated particles for the remap.
 
+use super::shapes::{
+    Corners, NO_CORNERS, Shapes, all_corners, corner, interpolate, load_nodes, set_corner,
+};
 use super::{BLOCK, CellSums};
 use crate::Vec3;
+use crate::lanes::{LANES, Lane, Window, for_each_simd, get, set, sum, whole};
 use crate::parallel::{ByCell, fold};
 use crate::simulation::Simulation;
+
+/// Cells and particles side by side.
+struct Kick {
+    shapes: Shapes,
+    received: Corners,
+    /// v_i + h a_i, for relaxation.
+    grid: Corners,
+    momentum: Corners,
+    position: [Lane; 3],
+    velocity: [Lane; 3],
+    mass: Lane,
+    /// Sums for the ledger: Σ m |a|², energy taken by relaxation, Σ ½ m v².
+    energy: [Lane; 3],
+}
+
+impl Default for Kick {
+    fn default() -> Kick {
+        let vector = [[0.0; LANES]; 3];
+        Kick {
+            shapes: Shapes::default(),
+            received: NO_CORNERS,
+            grid: NO_CORNERS,
+            momentum: NO_CORNERS,
+            position: vector,
+            velocity: vector,
+            mass: [0.0; LANES],
+            energy: vector,
+        }
+    }
+}
 
 pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     let h = before + after;
@@ -15,9 +49,10 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         nodes,
         cells,
         ledger,
+        simd,
         ..
     } = sim;
-    let (mesh, active, nodes) = (&plan.mesh, &*active, &nodes[..]);
+    let (mesh, active, nodes, simd) = (&plan.mesh, &*active, &nodes[..], *simd);
     // Share of the mesh's velocity that particles take on in a kick.
     let blend = -libm::expm1(-plan.numerics.pic_rate * h);
     let (position, mass) = (&particles.position, &particles.mass);
@@ -26,35 +61,63 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         ByCell<&mut [Vec3]>,
         &mut [CellSums],
     )| {
-        let first = block.first();
-        let mut energy = [0.0; 3];
-        for (sum, c) in sums.iter_mut().zip(block.cells) {
-            let e = active.elements[c] as usize;
-            let corners = active.cell_nodes[c].map(|n| &nodes[n as usize]);
-            let origin = mesh.nodes[mesh.tets[e][0] as usize];
-            sum.momentum = [Vec3::ZERO; 4];
-            for p in active.offsets[c] as usize..active.offsets[c + 1] as usize {
-                let n = crate::mesh::barycentric(origin, &mesh.gradients[e], position[p]);
-                let a: Vec3 = (0..4).map(|i| corners[i].received * n[i]).sum();
-                let v = &mut block.particles[p - first];
-                let m = mass[p];
-                *v += a * h;
-                energy[0] += m * a.length_squared();
+        let (first, first_cell) = (block.first(), block.cells.start);
+        let velocities = block.particles;
+        let mut kick = Kick::default();
+        for window in Window::of(block.cells, &active.offsets) {
+            for (l, &c) in window.cells().iter().enumerate() {
+                let c = c as usize;
+                kick.shapes.load(l, mesh, active.elements[c] as usize);
+                load_nodes(&mut kick.received, l, active, c, nodes, |n| n.received);
                 if blend > 0.0 {
-                    let grid: Vec3 = (0..4)
-                        .map(|i| (corners[i].velocity + corners[i].received * h) * n[i])
-                        .sum();
-                    let own = v.length_squared();
-                    *v += (grid - *v) * blend;
-                    energy[1] += 0.5 * m * (own - v.length_squared());
-                }
-                energy[2] += 0.5 * m * v.length_squared();
-                for i in 0..4 {
-                    sum.momentum[i] += *v * (n[i] * m);
+                    let moved = |n: &super::Node| n.velocity + n.received * h;
+                    load_nodes(&mut kick.grid, l, active, c, nodes, moved);
                 }
             }
+            kick.momentum = NO_CORNERS;
+            window.slots(|slot| {
+                for (l, &p) in slot.iter().enumerate() {
+                    let p = p as usize;
+                    set(&mut kick.position, l, position[p].to_array());
+                    set(&mut kick.velocity, l, velocities[p - first].to_array());
+                    kick.mass[l] = mass[p];
+                }
+                kick.mass[slot.len()..whole(slot.len())].fill(0.0);
+                accelerate(simd, &mut kick, h, blend, slot.len());
+                for (l, &p) in slot.iter().enumerate() {
+                    velocities[p as usize - first] = Vec3::from_array(get(&kick.velocity, l));
+                }
+            });
+            for (l, &c) in window.cells().iter().enumerate() {
+                sums[c as usize - first_cell].momentum = all_corners(&kick.momentum, l);
+            }
         }
-        energy
+        kick.energy.each_ref().map(sum)
     });
     ledger.end_kick(sums, before, after);
+}
+
+for_each_simd! {
+    fn accelerate(kick: &mut Kick, h: f64, blend: f64, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let n = kick.shapes.at(l, Vec3::from_array(get(&kick.position, l)));
+            let a = interpolate(n, all_corners(&kick.received, l));
+            let m = kick.mass[l];
+            let mut v = Vec3::from_array(get(&kick.velocity, l));
+            v += a * h;
+            kick.energy[0][l] += m * a.length_squared();
+            let own = v.length_squared();
+            if blend > 0.0 {
+                let grid = interpolate(n, all_corners(&kick.grid, l));
+                v += (grid - v) * blend;
+                kick.energy[1][l] += 0.5 * m * (own - v.length_squared());
+            }
+            kick.energy[2][l] += 0.5 * m * v.length_squared();
+            set(&mut kick.velocity, l, v.to_array());
+            for i in 0..4 {
+                let sum = corner(&kick.momentum, l, i) + v * (n[i] * m);
+                set_corner(&mut kick.momentum, l, i, sum);
+            }
+        }
+    }
 }

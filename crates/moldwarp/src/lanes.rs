@@ -1,7 +1,8 @@
 //! Particles side by side: how the step uses the processor's vector instructions.
 //!
-//! A window is up to [`LANES`] neighbouring cells; slot k of it are their k-th particles, one a lane.
-//! Cells with most particles come first, so that the lanes of a slot are the first ones of the window. What
+//! A window is up to [`LANES`] neighbouring cells; slot k of it are their k-th particles, one a lane. A
+//! cell with many particles takes several lanes. Those
+//! with most particles come first, so that the lanes of a slot are the first ones of the window. What
 //! a loop needs is copied to arrays of one number a lane; the loop over the lanes is plain scalar code,
 //! which the compiler turns into vector instructions. Each lane's arithmetic is that of the scalar code,
 //! operation for operation, and sums over lanes are made in the lanes' order, so that results have the same
@@ -9,8 +10,8 @@
 
 use std::ops::Range;
 
-/// Cells of a window.
-pub const LANES: usize = 64;
+/// Lanes of a window.
+pub const LANES: usize = 32;
 
 /// A number for each lane.
 pub type Lane = [f64; LANES];
@@ -116,80 +117,81 @@ pub fn side_by_side(items: Range<usize>) -> impl Iterator<Item = Range<usize>> {
     starts.map(move |start| start..(start + LANES).min(items.end))
 }
 
-/// Cells side by side.
+/// Cells side by side; one with many particles takes several lanes.
 #[derive(Clone, Debug)]
 pub struct Window {
-    /// First particle of the cell in each lane, and how many it has.
+    /// First particle in each lane, and how many it has.
     first: [u32; LANES],
     count: [u32; LANES],
     cell: [u32; LANES],
-    cells: usize,
+    lanes: usize,
 }
 
+/// Most particles of a lane.
+const DEEP: u32 = 8;
+
 impl Window {
-    /// Cells one after another, at most [`LANES`], with those first that have most particles.
-    #[inline]
-    pub fn new(cells: Range<usize>, offsets: &[u32]) -> Window {
-        /// Cells with more are put with these, in the order in which they come.
-        const MOST: usize = 31;
+    /// Lanes one after another, brought into order: those with most particles first.
+    fn sorted(first: &[u32], count: &[u32], cell: &[u32]) -> Window {
         let mut window = Window {
             first: [0; LANES],
             count: [0; LANES],
             cell: [0; LANES],
-            cells: cells.len(),
+            lanes: first.len(),
         };
-        let count = |c: usize| offsets[c + 1] - offsets[c];
-        let mut start = [0u8; MOST + 2];
-        for c in cells.clone() {
-            start[MOST - (count(c) as usize).min(MOST) + 1] += 1;
+        let mut start = [0u8; DEEP as usize + 2];
+        for &count in count {
+            start[(DEEP - count) as usize + 1] += 1;
         }
-        for k in 0..=MOST {
+        for k in 0..=DEEP as usize {
             start[k + 1] += start[k];
         }
-        for c in cells {
-            let place = &mut start[MOST - (count(c) as usize).min(MOST)];
+        for i in 0..first.len() {
+            let place = &mut start[(DEEP - count[i]) as usize];
             let lane = usize::from(*place);
             *place += 1;
-            window.first[lane] = offsets[c];
-            window.count[lane] = count(c);
-            window.cell[lane] = c as u32;
+            window.first[lane] = first[i];
+            window.count[lane] = count[i];
+            window.cell[lane] = cell[i];
         }
-        window.sort_the_fullest(MOST as u32);
         window
-    }
-
-    /// Brings cells with so many particles or more into order; there is seldom one.
-    fn sort_the_fullest(&mut self, many: u32) {
-        for lane in 1..self.cells {
-            if self.count[lane] < many {
-                return;
-            }
-            let mut at = lane;
-            while at > 0 && self.count[at - 1] < self.count[at] {
-                self.first.swap(at - 1, at);
-                self.count.swap(at - 1, at);
-                self.cell.swap(at - 1, at);
-                at -= 1;
-            }
-        }
     }
 
     /// Cell in each lane.
     #[inline]
     pub fn cells(&self) -> &[u32] {
-        &self.cell[..self.cells]
+        &self.cell[..self.lanes]
     }
 
-    /// The windows of a block of cells.
+    /// The windows of a block of cells. Cells without particles are in none.
     pub fn of(cells: Range<usize>, offsets: &[u32]) -> impl Iterator<Item = Window> {
-        side_by_side(cells).map(|cells| Window::new(cells, offsets))
+        let mut c = cells.start;
+        let mut next = offsets[c];
+        std::iter::from_fn(move || {
+            let (mut first, mut count, mut cell) = ([0; LANES], [0; LANES], [0; LANES]);
+            let mut lanes = 0;
+            while lanes < LANES && c < cells.end {
+                let left = offsets[c + 1] - next;
+                if left > 0 {
+                    (first[lanes], cell[lanes]) = (next, c as u32);
+                    count[lanes] = left.min(DEEP);
+                    next += count[lanes];
+                    lanes += 1;
+                }
+                if next == offsets[c + 1] {
+                    c += 1;
+                }
+            }
+            let window = || Window::sorted(&first[..lanes], &count[..lanes], &cell[..lanes]);
+            (lanes > 0).then(window)
+        })
     }
 
     /// Slots one after another: the particle in each of their lanes.
     #[inline]
     pub fn slots(&self, mut each: impl FnMut(&[u32])) {
         let mut particles = self.first;
-        let mut lanes = self.cells;
+        let mut lanes = self.lanes;
         for k in 0.. {
             while lanes > 0 && self.count[lanes - 1] <= k {
                 lanes -= 1;
@@ -242,22 +244,21 @@ mod tests {
 
     #[test]
     fn every_particle_comes_once_in_its_cells_lane() {
-        let counts = [0, 3, 1, 40, 0, 33, 4, 4, 31, 35, 2];
+        let counts = [0, 3, 1, 400, 0, 33, 4, 4, 0, 8, 9, 2, 0];
         let mut offsets = vec![5];
         for n in counts {
             offsets.push(offsets.last().unwrap() + n);
         }
-        let window = Window::new(0..counts.len(), &offsets);
         let mut seen = vec![0; *offsets.last().unwrap() as usize];
-        let mut slots = 0;
-        window.slots(|particles| {
-            for (&p, &c) in particles.iter().zip(window.cells()) {
-                assert!((offsets[c as usize]..offsets[c as usize + 1]).contains(&p));
-                seen[p as usize] += 1;
-            }
-            slots += 1;
-        });
-        assert_eq!(slots, 40);
+        for window in Window::of(0..counts.len(), &offsets) {
+            assert!(window.cells().len() <= LANES);
+            window.slots(|particles| {
+                for (&p, &c) in particles.iter().zip(window.cells()) {
+                    assert!((offsets[c as usize]..offsets[c as usize + 1]).contains(&p));
+                    seen[p as usize] += 1;
+                }
+            });
+        }
         assert!(seen[..5].iter().all(|&n| n == 0) && seen[5..].iter().all(|&n| n == 1));
     }
 }

@@ -65,7 +65,7 @@ pub struct CellStress {
     pub stress: Voigt,
     /// Σ V_p of particles that are not separated, m³.
     pub closed: f64,
-    /// Σ λ V_p and Σ G V_p, J.
+    /// Σ λ V_p and Σ G V_p, J; kept where there is viscosity only.
     pub moduli: [f64; 2],
     /// Greatest constrained modulus of its particles, Pa.
     pub wave_modulus: f64,

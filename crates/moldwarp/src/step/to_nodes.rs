@@ -9,7 +9,6 @@ use crate::lanes::{
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{ByCell, fold};
-use crate::particles::Particles;
 use crate::plan::Integration;
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt, add_scaled};
@@ -108,6 +107,7 @@ fn sum_cells(sim: &mut Simulation) {
     } = sim;
     let (mesh, active, particles, elasticity) = (&plan.mesh, &*active, &*particles, &*elasticity);
     let (reference, simd) = (reference.as_ref(), *simd);
+    let viscous = plan.numerics.viscosity > 0.0;
     let sums = (
         &mut cells.sums[..],
         &mut cells.pairs[..],
@@ -123,7 +123,11 @@ fn sum_cells(sim: &mut Simulation) {
         ByCell<Range<usize>>,
         Sums,
     )| {
-        let first = block.cells.start;
+        let cells = block.cells.clone();
+        let first = cells.start;
+        sums.fill(CellSums::default());
+        pairs.fill(CellPairs::default());
+        stresses.fill(CellStress::default());
         let mut side = Side::default();
         for window in Window::of(block.cells, &active.offsets) {
             let lanes = window.cells().len();
@@ -154,26 +158,34 @@ fn sum_cells(sim: &mut Simulation) {
             });
             for (l, &c) in window.cells().iter().enumerate() {
                 let own = c as usize - first;
-                let [volume, solid, closed] = get(&side.volumes, l);
-                sums[own] = CellSums {
-                    mass: get(&side.mass, l),
-                    momentum: all_corners(&side.momentum, l),
-                    volume,
-                    solid,
-                };
-                pairs[own] = get(&side.pairs, l);
-                let inside =
-                    active.offsets[c as usize] as usize..active.offsets[c as usize + 1] as usize;
-                stresses[own] = CellStress {
-                    stress: get(&side.stress, l),
-                    closed,
-                    ..stiffness(inside.clone(), particles, elasticity)
-                };
+                let (sum, stress) = (&mut sums[own], &mut stresses[own]);
+                let momentum = all_corners(&side.momentum, l);
+                for i in 0..4 {
+                    sum.mass[i] += side.mass[i][l];
+                    sum.momentum[i] += momentum[i];
+                }
+                sum.volume += side.volumes[0][l];
+                sum.solid += side.volumes[1][l];
+                stress.closed += side.volumes[2][l];
+                for k in 0..6 {
+                    pairs[own][k] += side.pairs[k][l];
+                    stress.stress[k] += side.stress[k][l];
+                }
+            }
+        }
+        for (stress, c) in stresses.iter_mut().zip(cells) {
+            let inside = active.offsets[c] as usize..active.offsets[c + 1] as usize;
+            for p in inside {
+                let body = particles.body[p] as usize;
+                let [lame, shear, wave] = elasticity[body];
+                stress.wave_modulus = stress.wave_modulus.max(wave);
+                if viscous {
+                    stress.moduli[0] += lame * particles.volume[p];
+                    stress.moduli[1] += shear * particles.volume[p];
+                }
                 if let Some(reference) = reference {
-                    for p in inside {
-                        let (body, x) = (particles.body[p] as usize, particles.position[p]);
-                        reference.add(&mut stresses[own], body, x, particles.volume[p]);
-                    }
+                    let (x, volume) = (particles.position[p], particles.volume[p]);
+                    reference.add(stress, body, x, volume);
                 }
             }
         }
@@ -191,20 +203,6 @@ impl Side {
             .chain(&mut self.volumes);
         sums.for_each(|sum| sum[..lanes].fill(0.0));
     }
-}
-
-/// Moduli of a cell with these particles.
-#[inline]
-fn stiffness(inside: Range<usize>, particles: &Particles, elasticity: &[[f64; 3]]) -> CellStress {
-    let mut sum = CellStress::default();
-    for p in inside {
-        let ([lame, shear, wave], volume) =
-            (elasticity[particles.body[p] as usize], particles.volume[p]);
-        sum.moduli[0] += lame * volume;
-        sum.moduli[1] += shear * volume;
-        sum.wave_modulus = sum.wave_modulus.max(wave);
-    }
-    sum
 }
 
 /// Mass, velocity, filling and density of each node.

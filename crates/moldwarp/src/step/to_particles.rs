@@ -63,6 +63,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     )| {
         let (first, first_cell) = (block.first(), block.cells.start);
         let velocities = block.particles;
+        sums.iter_mut().for_each(|s| s.momentum = [Vec3::ZERO; 4]);
         let mut kick = Kick::default();
         for window in Window::of(block.cells, &active.offsets) {
             for (l, &c) in window.cells().iter().enumerate() {
@@ -89,7 +90,10 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 }
             });
             for (l, &c) in window.cells().iter().enumerate() {
-                sums[c as usize - first_cell].momentum = all_corners(&kick.momentum, l);
+                let momentum = &mut sums[c as usize - first_cell].momentum;
+                for i in 0..4 {
+                    momentum[i] += corner(&kick.momentum, l, i);
+                }
             }
         }
         kick.energy.each_ref().map(sum)

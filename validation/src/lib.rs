@@ -9,6 +9,7 @@ pub mod example;
 mod plot;
 mod report;
 pub mod setup;
+pub mod speed;
 
 pub use plot::{Curve, Plot};
 pub use report::{Check, Report, Table};

@@ -1,7 +1,8 @@
 //! `moldwarp-validation coarse|fine [CASE]`: computes the cases and writes their tables and plots.
-//! `exact` writes the exact histories of the examples, `pictures` draws the examples' plots.
+//! `exact` writes the exact histories of the examples, `pictures` draws the examples' plots, `speed`
+//! measures the step.
 
-use moldwarp_validation::{Fidelity, cases, example};
+use moldwarp_validation::{Fidelity, cases, example, speed};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -12,6 +13,7 @@ fn main() -> ExitCode {
         Some("coarse") => Fidelity::Coarse,
         Some("fine") => Fidelity::Fine,
         Some("exact") => return written(example::write_exact().map_err(Into::into)),
+        Some("speed") => return finished(speed::measure(&arguments[1..])),
         Some("pictures") => return written(example::draw()),
         _ => return usage(),
     };
@@ -59,8 +61,20 @@ fn written(files: Result<Vec<PathBuf>, Box<dyn std::error::Error>>) -> ExitCode 
     }
 }
 
+fn finished(result: Result<(), Box<dyn std::error::Error>>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
 fn usage() -> ExitCode {
-    eprintln!("usage: moldwarp-validation coarse|fine [CASE] | exact | pictures\ncases:");
+    eprintln!(
+        "usage: moldwarp-validation coarse|fine [CASE] | exact | pictures | speed [BENCH]…\ncases:"
+    );
     for case in &cases::ALL {
         eprintln!("  {:18} {}", case.name, case.title);
     }

@@ -75,6 +75,26 @@ struct Side {
     left: Lane,
 }
 
+impl Default for Side {
+    fn default() -> Side {
+        let vector = [[0.0; LANES]; 3];
+        Side {
+            shapes: Shapes::default(),
+            moved: NO_CORNERS,
+            position: vector,
+            displacement: vector,
+            mass: [0.0; LANES],
+            work: [0.0; LANES],
+            left: [0.0; LANES],
+        }
+    }
+}
+
+#[inline(always)]
+fn is_inside(n: [f64; 4]) -> bool {
+    (n[0] >= 0.0) & (n[1] >= 0.0) & (n[2] >= 0.0) & (n[3] >= 0.0)
+}
+
 for_each_simd! {
     fn go_along(side: &mut Side, gravity: Vec3, lanes: usize) {
         for l in 0..whole(lanes) {
@@ -85,9 +105,7 @@ for_each_simd! {
             let displacement = Vec3::from_array(get(&side.displacement, l)) + step;
             set(&mut side.displacement, l, displacement.to_array());
             side.work[l] += side.mass[l] * gravity.dot(step);
-            let n = side.shapes.at(l, x);
-            let inside = (n[0] >= 0.0) & (n[1] >= 0.0) & (n[2] >= 0.0) & (n[3] >= 0.0);
-            side.left[l] = either(inside, 0.0, 1.0);
+            side.left[l] = either(is_inside(side.shapes.at(l, x)), 0.0, 1.0);
         }
     }
 }
@@ -174,16 +192,7 @@ fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
     let (lifted, crossing) = fold(block, BLOCK, &|block: ByCell<Arrays>| {
         let first = block.first();
         let (positions, displacements, elements) = block.particles;
-        let vector = [[0.0; LANES]; 3];
-        let mut side = Side {
-            shapes: Shapes::default(),
-            moved: NO_CORNERS,
-            position: vector,
-            displacement: vector,
-            mass: [0.0; LANES],
-            work: [0.0; LANES],
-            left: [0.0; LANES],
-        };
+        let mut side = Side::default();
         let mut crossing = Crossing::default();
         for window in Window::of(block.cells, &active.offsets) {
             for (l, &c) in window.cells().iter().enumerate() {
@@ -217,7 +226,16 @@ fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
     crossing
 }
 
-/// Walks each particle to its element in a mesh that has moved.
+for_each_simd! {
+    fn look(side: &mut Side, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let x = Vec3::from_array(get(&side.position, l));
+            side.left[l] = either(is_inside(side.shapes.at(l, x)), 0.0, 1.0);
+        }
+    }
+}
+
+/// Finds each particle's element in a mesh that has moved.
 fn locate(sim: &mut Simulation) -> Crossing {
     let Simulation {
         plan,
@@ -225,6 +243,7 @@ fn locate(sim: &mut Simulation) -> Crossing {
         active,
         fields,
         contacts,
+        simd,
         ..
     } = sim;
     let search = Search {
@@ -233,13 +252,30 @@ fn locate(sim: &mut Simulation) -> Crossing {
         contacts,
         body: &particles.body,
     };
-    let position = &particles.position;
+    let (active, position, simd) = (&*active, &particles.position, *simd);
     let block = ByCell::new(&active.offsets, &mut particles.element[..]);
     fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {
         let first = block.first();
+        let elements = block.particles;
+        let mut side = Side::default();
         let mut crossing = Crossing::default();
-        for (k, element) in block.particles.iter_mut().enumerate() {
-            search.walk(first + k, position[first + k], element, &mut crossing);
+        for window in Window::of(block.cells, &active.offsets) {
+            for (l, &c) in window.cells().iter().enumerate() {
+                let e = active.elements[c as usize] as usize;
+                side.shapes.load(l, search.mesh, e);
+            }
+            window.slots(|slot| {
+                for (l, &p) in slot.iter().enumerate() {
+                    set(&mut side.position, l, position[p as usize].to_array());
+                }
+                look(simd, &mut side, slot.len());
+                for (l, &p) in slot.iter().enumerate() {
+                    if side.left[l] != 0.0 {
+                        let (p, element) = (p as usize, &mut elements[p as usize - first]);
+                        search.walk(p, position[p], element, &mut crossing);
+                    }
+                }
+            });
         }
         crossing
     })

@@ -1,7 +1,7 @@
 // A light dynamic probe, its cone just in the ground: half a meridian plane, which the scene revolves.
 // Lengths in m; x is the radius, z up, 0 at the ground's surface, where the cone's shoulder is.
 // Mesh with: gmsh probe.geo -2 -o probe.msh
-DefineConstant[ h = 0.009 ]; // size of elements at the cone
+DefineConstant[ h = 0.013 ]; // size of elements at the cone
 D = 0.0357;        // diameter, of the cone and of the rod
 apex = 90;         // angle of the cone, degrees: assumed, the standard light probe's
 long = 1;          // length of the rod: assumed

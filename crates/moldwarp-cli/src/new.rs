@@ -39,7 +39,8 @@ const CASES: &[Case] = &[
         "anchor.msh", "figures.py", "README.md",
     ),
     case!("dynamic-probing":
-        "scene.toml", "fine.toml", "probe.geo", "fine.geo", "probe.msh", "figures.py", "README.md",
+        "scene.toml", "medium.toml", "fine.toml", "probe.geo", "medium.geo", "fine.geo", "probe.msh",
+        "figures.py", "README.md",
     ),
 ];
 

@@ -55,7 +55,9 @@ pub fn principal(s: &Voigt) -> Principal {
 /// Whether [`decompose`] can take a deviator of this square.
 #[inline(always)]
 fn is_ordinary(norm_squared: f64) -> bool {
-    norm_squared >= 1e-100 && norm_squared < 1e100
+    // Both are asked, so that there is no jump.
+    let (large, small) = (norm_squared >= 1e-100, norm_squared < 1e100);
+    large & small
 }
 
 /// [`principal`] of an ordinary stress, without branches, and whether this one is.

@@ -18,9 +18,6 @@ struct Bench {
     steps: u64,
 }
 
-const ELASTIC: &[&str] = &[
-    "materials.soil={ model = \"linear-elastic\", young_modulus = \"10 MPa\", poisson_ratio = 0.3, density = \"1800 kg/m3\" }",
-];
 const SMALL: &[&str] = &[
     "mesh.box.cells=[40, 10, 20]",
     "numerics.time_step=1.1564e-4",
@@ -47,8 +44,8 @@ const BENCHES: [Bench; 7] = [
     },
     Bench {
         name: "elastic",
-        scene: "benches/column.toml",
-        sets: ELASTIC,
+        scene: "benches/elastic.toml",
+        sets: &[],
         warm_up: 0,
         steps: 100,
     },

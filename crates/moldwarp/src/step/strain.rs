@@ -1,7 +1,7 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
+use super::deformed::Deformed;
 use super::shapes::load_nodes;
-use super::to_nodes::Deformed;
 use super::{BLOCK, CellStrain, smoothing};
 use crate::lanes::{self, LANES, Lane, for_each_simd, get, set, side_by_side, whole};
 use crate::parallel::fold;

@@ -174,6 +174,11 @@ fn files_and_folders() {
             &["run", "column", "--out", below_a_file],
         ),
         refused(&bench, "no threads", &["run", "column", "--threads", "0"]),
+        refused(
+            &bench,
+            "no such instructions",
+            &["run", "column", "--simd", "sse"],
+        ),
     ];
     insta::assert_snapshot!(lines.join("\n"));
 }

@@ -69,23 +69,6 @@ impl Shapes {
 
 /// Copies a vector of each node of a cell.
 #[inline(always)]
-pub(super) fn load_corners(
-    corners: &mut Corners,
-    l: usize,
-    active: &Active,
-    c: usize,
-    value: impl Fn(u32) -> Vec3,
-) {
-    for (i, &n) in active.cell_nodes[c].iter().enumerate() {
-        let value = value(n);
-        corners[3 * i][l] = value.x;
-        corners[3 * i + 1][l] = value.y;
-        corners[3 * i + 2][l] = value.z;
-    }
-}
-
-/// The same for vectors that nodes have.
-#[inline(always)]
 pub(super) fn load_nodes(
     corners: &mut Corners,
     l: usize,
@@ -94,7 +77,9 @@ pub(super) fn load_nodes(
     nodes: &[Node],
     value: impl Fn(&Node) -> Vec3,
 ) {
-    load_corners(corners, l, active, c, |n| value(&nodes[n as usize]));
+    for (i, &n) in active.cell_nodes[c].iter().enumerate() {
+        set_corner(corners, l, i, value(&nodes[n as usize]));
+    }
 }
 
 #[inline(always)]

@@ -105,6 +105,8 @@ impl Material {
                     let mut state = get(&s.state, l);
                     let update = self.update(&get(&s.before, l), &get(&s.strain, l), &mut state);
                     set(&mut s.stress, l, update.stress);
+                    set(&mut s.plastic_strain, l, update.plastic_strain);
+                    s.plastic |= update.plastic_strain != [0.0; 6];
                     set(&mut s.state, l, state);
                 }
             }

@@ -209,7 +209,8 @@ impl Window {
 /// would be done one by one. What the additional ones hold is a number from before, and goes nowhere.
 #[inline(always)]
 pub fn whole(lanes: usize) -> usize {
-    lanes.next_multiple_of(8).min(LANES)
+    // Written so that the compiler sees that it is a multiple of eight and no more than there are.
+    lanes.div_ceil(8).min(LANES / 8) * 8
 }
 
 /// The number of each component in a lane.

@@ -6,7 +6,7 @@
 
 use crate::boundary::{Surroundings, load_points};
 use crate::measure::Scale;
-use crate::particles::{Particles, Seed, check_overlap, inherited, particles, seeds};
+use crate::particles::{Order, Particles, Seed, check_overlap, inherited, particles, seeds};
 use crate::plan::{Load, Plan};
 use crate::simulation::{SetupError, Simulation, Stop};
 
@@ -38,12 +38,10 @@ pub(crate) fn at_the_start(plan: &Plan) -> Result<(Particles, Vec<Seed>), SetupE
 /// Whether the particles of a body that comes later will be next to all faces of its load.
 fn check_load(plan: &Plan, load: (usize, &Load), seeds: &[Seed]) -> Result<(), SetupError> {
     let particles = particles(seeds, &plan.mesh, &plan.bodies, &plan.materials);
-    let elements = 0..=plan.mesh.tets.len() as u32;
-    let first = |e: u32| seeds.partition_point(|s| s.element < e) as u32;
-    let offsets: Vec<u32> = elements.map(first).collect();
+    let order = Order::of(&particles.element, plan.mesh.tets.len());
     let ground = stress_free(plan);
     let loads = std::iter::once(load);
-    load_points(&plan.mesh, loads, &particles, &offsets, &ground)?;
+    load_points(&plan.mesh, loads, &particles, &order, &ground)?;
     Ok(())
 }
 
@@ -107,7 +105,7 @@ impl Simulation {
         }
         self.reorder();
         self.load_added_bodies();
-        self.probes.bodies_changed(&self.plan, &self.order.offsets);
+        self.probes.bodies_changed(&self.plan, &self.order);
         self.scale = Scale::new(self);
         Ok(())
     }
@@ -155,7 +153,8 @@ impl Simulation {
         let stays = |body: &u16| !removed.contains(&usize::from(*body));
         let keep: Vec<bool> = particles.body.iter().map(stays).collect();
         let gone = (0..particles.len()).filter(|&p| !keep[p]);
-        let kinetic = |p: usize| 0.5 * particles.mass[p] * particles.velocity[p].length_squared();
+        let kinetic =
+            |p: usize| 0.5 * particles.mass[p] * particles.velocity.at(p).length_squared();
         ledger.remove(gone.map(kinetic).sum());
         let mut left = 0;
         let place = |&stays: &bool| {
@@ -177,7 +176,7 @@ impl Simulation {
         let added = &plan.stages[self.clock.stage].add;
         let own = plan.loads.iter().enumerate();
         let own = own.filter(|l| added.contains(&l.1.body));
-        let filled = (&self.particles, &self.order.offsets[..]);
+        let filled = (&self.particles, &self.order);
         let points = load_points(&plan.mesh, own, filled.0, filled.1, &stress_free(plan));
         let points = points.expect("the faces of loads have been checked at the start");
         self.loads.extend(points);

@@ -1,13 +1,14 @@
 //! Particles side by side: how the step uses the processor's vector instructions.
 //!
-//! A window is up to [`LANES`] neighbouring cells; slot k of it are their k-th particles, one a lane. A
-//! cell with many particles takes several lanes. Those
-//! with most particles come first, so that the lanes of a slot are the first ones of the window. What
-//! a loop needs is copied to arrays of one number a lane; the loop over the lanes is plain scalar code,
-//! which the compiler turns into vector instructions. Each lane's arithmetic is that of the scalar code,
+//! A tile is up to [`LANES`] neighbouring cells, one a lane; slot k of it are their k-th particles. A
+//! cell with many particles has several lanes. Those
+//! with most particles come first, so that the lanes of a slot are the first ones of the tile. What is kept
+//! per cell, and the particles of a slot, lie side by side in memory. The loop over the lanes is plain scalar
+//! code, which the compiler turns into vector instructions. Each lane's arithmetic is that of the scalar code,
 //! operation for operation, and sums over lanes are made in the lanes' order, so that results have the same
 //! bits with any instruction set.
 
+use crate::parallel::Split;
 use std::ops::Range;
 
 /// Lanes of a window.
@@ -111,97 +112,280 @@ macro_rules! for_each_simd {
 }
 pub(crate) use for_each_simd;
 
-/// Items one after another, as many at a time as there are lanes.
-pub fn side_by_side(items: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    let starts = items.clone().step_by(LANES);
-    starts.map(move |start| start..(start + LANES).min(items.end))
+/// Tile and lane of a cell.
+#[inline(always)]
+pub fn lane_of(cell: usize) -> (usize, usize) {
+    (cell / LANES, cell % LANES)
 }
 
-/// Cells side by side; one with many particles takes several lanes.
-#[derive(Clone, Debug)]
-pub struct Window {
-    /// First particle in each lane, and how many it has.
-    first: [u32; LANES],
-    count: [u32; LANES],
-    cell: [u32; LANES],
-    lanes: usize,
+/// How cells and particles lie in memory: tile after tile, of its cells one a lane, of its particles slot
+/// after slot, in each lane after lane.
+///
+/// What is kept per cell is kept as one record a tile of one number a lane; cell c is lane c mod [`LANES`]
+/// of tile c / [`LANES`].
+#[derive(Clone, Debug, Default)]
+pub struct Tiles {
+    tiles: Vec<Tile>,
+    /// Place of the first particle of each slot, and one past the last.
+    slots: Vec<u32>,
+    /// Lanes that help another one of their tile, as its cell has many particles.
+    helpers: Vec<Helper>,
 }
 
-/// Most particles of a lane.
+#[derive(Clone, Copy, Debug)]
+struct Tile {
+    first_slot: u32,
+    first_helper: u32,
+}
+
+/// A lane that adds to another one of the same cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Helper {
+    pub lane: u8,
+    pub of: u8,
+}
+
+/// Most particles of a lane, unless their cell would take more than a tile.
 const DEEP: u32 = 8;
 
-impl Window {
-    /// Lanes one after another, brought into order: those with most particles first.
-    fn sorted(first: &[u32], count: &[u32], cell: &[u32]) -> Window {
-        let mut window = Window {
-            first: [0; LANES],
-            count: [0; LANES],
-            cell: [0; LANES],
-            lanes: first.len(),
-        };
-        let mut start = [0u8; DEEP as usize + 2];
-        for &count in count {
-            start[(DEEP - count) as usize + 1] += 1;
-        }
-        for k in 0..=DEEP as usize {
-            start[k + 1] += start[k];
-        }
-        for i in 0..first.len() {
-            let place = &mut start[(DEEP - count[i]) as usize];
-            let lane = usize::from(*place);
-            *place += 1;
-            window.first[lane] = first[i];
-            window.count[lane] = count[i];
-            window.cell[lane] = cell[i];
-        }
-        window
-    }
+/// Particles of a cell, by rank.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pile {
+    /// Number of the cell in the order in which cells are given.
+    pub cell: u32,
+    pub first: u32,
+    pub count: u32,
+    /// Whether it is a helper's.
+    pub more: bool,
+}
 
-    /// Cell in each lane.
-    #[inline]
-    pub fn cells(&self) -> &[u32] {
-        &self.cell[..self.lanes]
-    }
-
-    /// The windows of a block of cells. Cells without particles are in none.
-    pub fn of(cells: Range<usize>, offsets: &[u32]) -> impl Iterator<Item = Window> {
-        let mut c = cells.start;
-        let mut next = offsets[c];
-        std::iter::from_fn(move || {
-            let (mut first, mut count, mut cell) = ([0; LANES], [0; LANES], [0; LANES]);
-            let mut lanes = 0;
-            while lanes < LANES && c < cells.end {
-                let left = offsets[c + 1] - next;
-                if left > 0 {
-                    (first[lanes], cell[lanes]) = (next, c as u32);
-                    count[lanes] = left.min(DEEP);
-                    next += count[lanes];
-                    lanes += 1;
-                }
-                if next == offsets[c + 1] {
-                    c += 1;
-                }
+impl Tiles {
+    /// Lays out cells, given by their particles. `lane` is told the lanes one after another, none for those
+    /// that stay empty, `put` the place of each rank.
+    pub(crate) fn rebuild(
+        &mut self,
+        cells: impl Iterator<Item = (u32, u32)>,
+        mut lane: impl FnMut(Option<Pile>),
+        mut put: impl FnMut(u32, u32),
+    ) {
+        self.tiles.clear();
+        self.slots.clear();
+        self.helpers.clear();
+        let mut place = 0;
+        let (mut piles, mut lanes) = ([Pile::default(); LANES], 0);
+        for (cell, (first, count)) in cells.enumerate() {
+            let deep = DEEP.max(count.div_ceil(LANES as u32));
+            let wanted = count.div_ceil(deep).max(1) as usize;
+            if lanes + wanted > LANES {
+                self.push(&mut piles[..lanes], &mut place, &mut lane, &mut put);
+                lanes = 0;
             }
-            let window = || Window::sorted(&first[..lanes], &count[..lanes], &cell[..lanes]);
-            (lanes > 0).then(window)
+            for k in 0..wanted as u32 {
+                piles[lanes] = Pile {
+                    cell: cell as u32,
+                    first: first + k * deep,
+                    count: (count - k * deep).min(deep),
+                    more: k > 0,
+                };
+                lanes += 1;
+            }
+        }
+        if lanes > 0 {
+            self.push(&mut piles[..lanes], &mut place, &mut lane, &mut put);
+        }
+        self.end_tiles();
+        self.slots.push(place);
+    }
+
+    fn end_tiles(&mut self) {
+        self.tiles.push(Tile {
+            first_slot: self.slots.len() as u32,
+            first_helper: self.helpers.len() as u32,
+        });
+    }
+
+    fn push(
+        &mut self,
+        piles: &mut [Pile],
+        place: &mut u32,
+        lane: &mut impl FnMut(Option<Pile>),
+        put: &mut impl FnMut(u32, u32),
+    ) {
+        // Those with most particles first, else as they come. (The library's sort allocates.)
+        for i in 1..piles.len() {
+            let mut k = i;
+            while k > 0 && piles[k - 1].count < piles[k].count {
+                piles.swap(k - 1, k);
+                k -= 1;
+            }
+        }
+        self.end_tiles();
+        (0..LANES).for_each(|l| lane(piles.get(l).copied()));
+        for (l, pile) in piles.iter().enumerate().filter(|p| p.1.more) {
+            let own = |other: &Pile| other.cell == pile.cell && !other.more;
+            let of = piles.iter().position(own);
+            self.helpers.push(Helper {
+                lane: l as u8,
+                of: of.expect("a cell has a lane of its own") as u8,
+            });
+        }
+        let deepest = piles.first().map_or(0, |pile| pile.count);
+        for k in 0..deepest {
+            self.slots.push(*place);
+            for pile in piles.iter().take_while(|pile| pile.count > k) {
+                put(pile.first + k, *place);
+                *place += 1;
+            }
+        }
+    }
+
+    /// Number of tiles.
+    pub fn len(&self) -> usize {
+        self.tiles.len() - 1
+    }
+
+    fn first_particle(&self, tile: usize) -> usize {
+        self.slots[self.tiles[tile].first_slot as usize] as usize
+    }
+}
+
+/// Tiles with their records, and with the parts of particle arrays that lie in them.
+pub struct ByTile<'a, P, C> {
+    tiles: &'a Tiles,
+    range: Range<usize>,
+    /// Arrays over the particles of the tiles.
+    pub particles: P,
+    /// Arrays over the tiles.
+    pub cells: C,
+}
+
+impl<'a, P: Split, C: Split> ByTile<'a, P, C> {
+    /// All tiles with arrays over all particles and records of all tiles.
+    pub fn new(tiles: &'a Tiles, particles: P, cells: C) -> ByTile<'a, P, C> {
+        ByTile {
+            tiles,
+            range: 0..tiles.len(),
+            particles,
+            cells,
+        }
+    }
+}
+
+impl<'a, P, C> ByTile<'a, P, C> {
+    /// The first particle.
+    pub fn first(&self) -> usize {
+        self.tiles.first_particle(self.range.start)
+    }
+
+    /// Numbers of the tiles, each with what is in it.
+    pub fn each(&self) -> impl Iterator<Item = (usize, Contents<'a>)> + use<'a, P, C> {
+        let tiles = self.tiles;
+        self.range.clone().map(move |number| {
+            let [tile, next] = [&tiles.tiles[number], &tiles.tiles[number + 1]];
+            let slots = tile.first_slot as usize..next.first_slot as usize + 1;
+            let helpers = tile.first_helper as usize..next.first_helper as usize;
+            let contents = Contents {
+                slots: &tiles.slots[slots],
+                helpers: &tiles.helpers[helpers],
+            };
+            (number, contents)
         })
     }
+}
 
-    /// Slots one after another: the particle in each of their lanes.
-    #[inline]
-    pub fn slots(&self, mut each: impl FnMut(&[u32])) {
-        let mut particles = self.first;
-        let mut lanes = self.lanes;
-        for k in 0.. {
-            while lanes > 0 && self.count[lanes - 1] <= k {
-                lanes -= 1;
-            }
-            if lanes == 0 {
-                return;
-            }
-            each(&particles[..lanes]);
-            particles[..lanes].iter_mut().for_each(|p| *p += 1);
+/// What is in a tile.
+#[derive(Clone, Copy)]
+pub struct Contents<'a> {
+    slots: &'a [u32],
+    /// Lanes whose sums belong to another lane.
+    pub helpers: &'a [Helper],
+}
+
+impl<'a> Contents<'a> {
+    /// Places of the particles in each slot, one a lane.
+    pub fn slots(self) -> impl Iterator<Item = Range<usize>> + 'a {
+        (self.slots.windows(2)).map(|w| w[0] as usize..w[1] as usize)
+    }
+
+    /// Adds the sums of helpers to those that they help.
+    pub fn gather<'b>(self, sums: impl IntoIterator<Item = &'b mut Lane>) {
+        if self.helpers.is_empty() {
+            return;
         }
+        for sum in sums {
+            for helper in self.helpers {
+                sum[usize::from(helper.of)] += sum[usize::from(helper.lane)];
+                sum[usize::from(helper.lane)] = 0.0;
+            }
+        }
+    }
+}
+
+impl<P: Split, C: Split> Split for ByTile<'_, P, C> {
+    fn count(&self) -> usize {
+        self.range.len()
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        let first = self.first();
+        let (low, high) = self.range.split(at);
+        let tiles = self.tiles;
+        let particles = self
+            .particles
+            .split(tiles.first_particle(high.start) - first);
+        let cells = self.cells.split(at);
+        let part = |range, particles, cells| ByTile {
+            tiles,
+            range,
+            particles,
+            cells,
+        };
+        (
+            part(low, particles.0, cells.0),
+            part(high, particles.1, cells.1),
+        )
+    }
+}
+
+/// Copies the numbers of particles from `start` on to lanes: as many as there are lanes or particles.
+#[inline(always)]
+pub fn load<const N: usize>(lanes: &mut [Lane; N], columns: &[&[f64]; N], start: usize) {
+    for k in 0..N {
+        load_one(&mut lanes[k], columns[k], start);
+    }
+}
+
+#[inline(always)]
+pub fn load_one(lane: &mut Lane, column: &[f64], start: usize) {
+    let from = &column[start..];
+    match from.first_chunk::<LANES>() {
+        Some(all) => *lane = *all,
+        None => lane[..from.len()].copy_from_slice(from),
+    }
+}
+
+/// Copies the first numbers of lanes to the particles from `start` on.
+#[inline(always)]
+pub fn store<const N: usize>(
+    lanes: &[Lane; N],
+    columns: &mut [&mut [f64]; N],
+    start: usize,
+    count: usize,
+) {
+    for k in 0..N {
+        store_one(&lanes[k], columns[k], start, count);
+    }
+}
+
+#[inline(always)]
+pub fn store_one(lane: &Lane, column: &mut [f64], start: usize, count: usize) {
+    let (groups, rest) = column[start..start + count].as_chunks_mut::<8>();
+    let (from, _) = lane.as_chunks::<8>();
+    let whole = groups.len();
+    for (to, from) in groups.iter_mut().zip(from) {
+        *to = *from;
+    }
+    if !rest.is_empty() {
+        rest.copy_from_slice(&from[whole][..rest.len()]);
     }
 }
 
@@ -246,20 +430,62 @@ mod tests {
     #[test]
     fn every_particle_comes_once_in_its_cells_lane() {
         let counts = [0, 3, 1, 400, 0, 33, 4, 4, 0, 8, 9, 2, 0];
-        let mut offsets = vec![5];
-        for n in counts {
-            offsets.push(offsets.last().unwrap() + n);
-        }
-        let mut seen = vec![0; *offsets.last().unwrap() as usize];
-        for window in Window::of(0..counts.len(), &offsets) {
-            assert!(window.cells().len() <= LANES);
-            window.slots(|particles| {
-                for (&p, &c) in particles.iter().zip(window.cells()) {
-                    assert!((offsets[c as usize]..offsets[c as usize + 1]).contains(&p));
-                    seen[p as usize] += 1;
+        let all: u32 = counts.iter().sum();
+        let first = |c: usize| counts[..c].iter().sum::<u32>();
+        let (mut tiles, mut lanes) = (Tiles::default(), Vec::new());
+        let mut rank_at = vec![u32::MAX; all as usize];
+        tiles.rebuild(
+            (0..counts.len()).map(|c| (first(c), counts[c])),
+            |pile| lanes.push(pile),
+            |rank, place| rank_at[place as usize] = rank,
+        );
+        assert_eq!(lanes.len(), LANES * tiles.len());
+        let own = lanes.iter().flatten().filter(|pile| !pile.more);
+        let mut own: Vec<u32> = own.map(|pile| pile.cell).collect();
+        own.sort_unstable();
+        assert_eq!(own, (0..counts.len() as u32).collect::<Vec<_>>());
+        let mut seen = vec![0; rank_at.len()];
+        let whole = ByTile::new(&tiles, 0..rank_at.len(), 0..tiles.len());
+        let (low, high) = whole.split(1);
+        let mut particles = vec![0.0; counts.len()];
+        for part in [low, high] {
+            for (number, contents) in part.each() {
+                assert!(part.cells.contains(&number));
+                let mut sum = [0.0; LANES];
+                for slot in contents.slots() {
+                    assert!(slot.start >= part.particles.start && slot.end <= part.particles.end);
+                    for (lane, place) in slot.enumerate() {
+                        let c = lanes[number * LANES + lane].unwrap().cell as usize;
+                        assert!((first(c)..first(c) + counts[c]).contains(&rank_at[place]));
+                        seen[rank_at[place] as usize] += 1;
+                        sum[lane] += 1.0;
+                    }
                 }
-            });
+                contents.gather([&mut sum]);
+                for (lane, sum) in sum.into_iter().enumerate() {
+                    if let Some(pile) = lanes[number * LANES + lane] {
+                        particles[pile.cell as usize] += sum;
+                    }
+                }
+            }
         }
-        assert!(seen[..5].iter().all(|&n| n == 0) && seen[5..].iter().all(|&n| n == 1));
+        assert!(seen.iter().all(|&n| n == 1));
+        assert!(
+            particles
+                .iter()
+                .zip(counts)
+                .all(|(&n, c)| n == f64::from(c))
+        );
+    }
+
+    #[test]
+    fn numbers_go_to_lanes_and_back() {
+        let numbers: Vec<f64> = (0..50).map(f64::from).collect();
+        let mut lane = [0.0; LANES];
+        load_one(&mut lane, &numbers, 30);
+        assert_eq!(lane[..20], numbers[30..]);
+        let mut to = vec![0.0; 50];
+        store_one(&lane, &mut to, 3, 19);
+        assert_eq!((to[2], &to[3..22], to[22]), (0.0, &numbers[30..49], 0.0));
     }
 }

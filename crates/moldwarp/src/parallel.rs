@@ -77,55 +77,29 @@ impl<A: Split, B: Split, C: Split> Split for (A, B, C) {
     }
 }
 
-/// Cells with the parts of particle arrays that lie in them: a cut between two cells cuts the
-/// arrays at the first particle of the second one.
-pub struct ByCell<'a, P> {
-    /// Cell numbers.
-    pub cells: Range<usize>,
-    /// Number of the first particle of each cell, and one past the last.
-    pub offsets: &'a [u32],
-    /// Arrays over the particles of `cells`.
-    pub particles: P,
-}
-
-impl<'a, P: Split> ByCell<'a, P> {
-    /// All cells with arrays over all particles.
-    pub fn new(offsets: &'a [u32], particles: P) -> ByCell<'a, P> {
-        ByCell {
-            cells: 0..offsets.len() - 1,
-            offsets,
-            particles,
-        }
-    }
-
-    /// Number of the first particle.
-    pub fn first(&self) -> usize {
-        self.offsets[self.cells.start] as usize
-    }
-}
-
-impl<P: Split> Split for ByCell<'_, P> {
+impl Split for () {
     fn count(&self) -> usize {
-        self.cells.len()
+        0
+    }
+    fn split(self, _: usize) -> ((), ()) {
+        ((), ())
+    }
+}
+
+impl<T: Split, const N: usize> Split for [T; N] {
+    fn count(&self) -> usize {
+        self[0].count()
     }
     fn split(self, at: usize) -> (Self, Self) {
-        let first = self.first();
-        let (low, high) = self.cells.split(at);
-        let (before, after) = self
-            .particles
-            .split(self.offsets[high.start] as usize - first);
-        (
-            ByCell {
-                cells: low,
-                offsets: self.offsets,
-                particles: before,
-            },
-            ByCell {
-                cells: high,
-                offsets: self.offsets,
-                particles: after,
-            },
-        )
+        let mut rest = [const { None }; N];
+        let mut k = 0;
+        let first = self.map(|part| {
+            let (low, high) = part.split(at);
+            rest[k] = Some(high);
+            k += 1;
+            low
+        });
+        (first, rest.map(|high| high.expect("one for each")))
     }
 }
 
@@ -225,16 +199,5 @@ mod tests {
         for threads in [2, 3, 8] {
             assert_eq!(one.to_bits(), sum_with(threads, &values).to_bits());
         }
-    }
-
-    #[test]
-    fn particles_are_cut_where_cells_are() {
-        let offsets = [0, 2, 2, 5, 6];
-        let mut data: Vec<u32> = (0..6).collect();
-        let all = ByCell::new(&offsets, &mut data[..]);
-        fold(all, 1, &|one: ByCell<&mut [u32]>| {
-            let (from, to) = (one.offsets[one.cells.start], one.offsets[one.cells.end]);
-            assert_eq!(one.particles.to_vec(), (from..to).collect::<Vec<_>>());
-        });
     }
 }

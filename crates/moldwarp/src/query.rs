@@ -77,7 +77,7 @@ impl Simulation {
 
     /// Number of elements that take part in the step.
     pub fn active_elements(&self) -> usize {
-        self.active.elements.len()
+        self.active.cell_count()
     }
 
     /// Energies since the start, J.
@@ -113,7 +113,7 @@ impl Simulation {
         let body = |p: usize| usize::from(self.particles.body[p]);
         let own = |e: u32| self.particles_in(e).any(|p| body(p) == driver);
         let driven: Vec<bool> = (0..mesh.tets.len() as u32).map(own).collect();
-        let inside = |e: u32| self.particles_in(e).len();
+        let inside = |e: u32| self.order.inside(e as usize).len();
         self.driven
             .fewest(mesh, travel, |e| driven[e as usize], inside)
     }
@@ -225,9 +225,8 @@ impl Simulation {
     }
 
     /// Places of the particles in an element.
-    pub(crate) fn particles_in(&self, e: u32) -> std::ops::Range<usize> {
-        let e = e as usize;
-        self.order.offsets[e] as usize..self.order.offsets[e + 1] as usize
+    pub(crate) fn particles_in(&self, e: u32) -> impl Iterator<Item = usize> {
+        self.order.inside(e as usize).iter().map(|&p| p as usize)
     }
 
     /// Mean stress of the particles in an element, Pa, if there are any.
@@ -236,7 +235,7 @@ impl Simulation {
         for p in self.particles_in(e) {
             crate::tensor::add_scaled(
                 &mut stress,
-                &self.particles.stress[p],
+                &self.particles.stress.at(p),
                 self.particles.volume[p],
             );
             volume += self.particles.volume[p];
@@ -247,7 +246,7 @@ impl Simulation {
     /// Σ N_i a_i at a particle, m/s².
     pub(crate) fn acceleration_at(&self, p: usize) -> Vec3 {
         let e = self.particles.element[p] as usize;
-        let n = self.plan.mesh.barycentric(e, self.particles.position[p]);
+        let n = self.plan.mesh.barycentric(e, self.particles.position.at(p));
         let cell = self.active.cell(e, self.fields.of(self.particles.body[p]));
         let cell = cell.expect("the element of a particle is a cell of its field");
         let corners = self.active.cell_nodes[cell];

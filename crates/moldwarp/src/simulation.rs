@@ -13,10 +13,7 @@ use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{InheritedError, InitialStressError, Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{
-    Active, CellForce, CellPairs, CellStrain, CellStress, CellSums, Grid, Node, Reference,
-    TimeStepError,
-};
+use crate::step::{Active, Cells, Grid, Node, Reference, Shared, TimeStepError};
 use crate::switches::Switches;
 
 /// Why a plan cannot be computed.
@@ -164,22 +161,6 @@ pub(crate) struct Clock {
     pub new_constraints: bool,
 }
 
-/// What the step keeps per cell.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Cells {
-    pub sums: Vec<CellSums>,
-    pub pairs: Vec<CellPairs>,
-    pub stresses: Vec<CellStress>,
-    pub forces: Vec<CellForce>,
-    /// Forces on the cell's nodes, N.
-    pub nodal: Vec<[Vec3; 4]>,
-    /// Σ_j M_ij (w_i − w_j) for each node, w being accelerations (N) or averages (kg m/s).
-    pub exchange: Vec<[Vec3; 4]>,
-    pub strains: Vec<CellStrain>,
-    /// What is smoothed times w_e, and w_e.
-    pub weights: Vec<[f64; 2]>,
-}
-
 /// A plan, the state of its bodies, and the books.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -193,6 +174,7 @@ pub struct Simulation {
     pub(crate) contacts: Contacts,
     pub(crate) active: Active,
     pub(crate) nodes: Vec<Node>,
+    pub(crate) shared: Shared,
     pub(crate) cells: Cells,
     pub(crate) constraints: Constraints,
     pub(crate) absorbing: Absorbing,
@@ -228,11 +210,11 @@ impl Simulation {
         let (mut particles, reserve) = bodies::at_the_start(&plan)?;
         let mut order = Order::default();
         let fields = Fields::new(plan.bodies.len(), &plan.contacts, |b| is_rigid(&plan, b));
-        order.sort(&mut particles, plan.mesh.tets.len(), &fields);
-        let contacts = Contacts::new(&plan, &fields, &particles, &order.offsets)?;
-        let (loads, ground) = ground(&plan, &mut particles, &order.offsets, &contacts)?;
+        order.find(&particles, plan.mesh.tets.len(), &fields);
+        let contacts = Contacts::new(&plan, &fields, &particles, &order)?;
+        let (loads, ground) = ground(&plan, &mut particles, &order, &contacts)?;
         let reference = reference(&plan, ground);
-        let mut probes = Probes::new(&plan, &particles, &order.offsets);
+        let mut probes = Probes::new(&plan, &particles, &order);
         let found = probes.find_contacts(&plan, &contacts);
         found.map_err(|probe| SetupError::NoContact { probe })?;
         let elasticity = plan
@@ -252,6 +234,7 @@ impl Simulation {
             contacts,
             active: Active::default(),
             nodes: Vec::new(),
+            shared: Shared::default(),
             cells: Cells::default(),
             constraints: Constraints::default(),
             absorbing: Absorbing::default(),
@@ -272,7 +255,7 @@ impl Simulation {
         };
         bodies::check_probes(&simulation)?;
         simulation.scale = Scale::new(&simulation);
-        simulation.activate();
+        simulation.reorder();
         simulation.begin_stage().map_err(|stop| match stop {
             Stop::TimeStep { error, .. } => SetupError::TimeStep(error),
             Stop::Motion { error, .. } => SetupError::Motion(error),
@@ -313,14 +296,7 @@ impl Simulation {
     /// Gives every particle the velocity (m/s) that `velocity` has at its position (m). For the
     /// start of a run, before the first step.
     pub fn set_velocity(&mut self, velocity: impl Fn(Vec3) -> Vec3) -> Result<(), Stop> {
-        for (v, &x) in self
-            .particles
-            .velocity
-            .iter_mut()
-            .zip(&self.particles.position)
-        {
-            *v = velocity(x);
-        }
+        self.particles.velocity = self.particles.position.iter().map(velocity).collect();
         self.ledger = Ledger::default();
         self.gave_velocities();
         self.clock.next = self.kick(0.0, self.remaining())?;
@@ -363,28 +339,26 @@ impl Simulation {
         }
     }
 
-    /// Sorts particles by element and numbers the active cells and nodes anew.
+    /// Brings particles into the order of their elements and numbers the active cells and nodes anew.
     pub(crate) fn reorder(&mut self) {
-        self.order
-            .sort(&mut self.particles, self.plan.mesh.tets.len(), &self.fields);
-        for point in &mut self.loads {
-            point.particle = self.order.destination[point.particle as usize];
-        }
-        self.probes.reorder(&self.order.destination);
-        self.activate();
-    }
-
-    pub(crate) fn activate(&mut self) {
         // The last drift of nodes that stay active is still needed for its work.
         std::mem::swap(&mut self.nodes, &mut self.spare_nodes);
         std::mem::swap(&mut self.active.keys, &mut self.spare_numbers);
+        let mesh = &self.plan.mesh;
+        self.order
+            .find(&self.particles, mesh.tets.len(), &self.fields);
         let grid = Grid {
-            mesh: &self.plan.mesh,
+            mesh,
             walls: &self.walls,
             fields: &self.fields,
         };
-        let (offsets, bodies) = (&self.order.offsets, &self.particles.body);
-        self.active.rebuild(&grid, offsets, bodies);
+        self.active.rebuild(&grid, &mut self.order);
+        self.order.settle(&mut self.particles);
+        let destination = &self.order.destination;
+        for point in &mut self.loads {
+            point.particle = destination[point.particle as usize];
+        }
+        self.probes.reorder(destination);
         self.contacts.find(&self.active);
         self.nodes.clear();
         self.nodes.resize(self.active.nodes.len(), Node::default());
@@ -394,15 +368,8 @@ impl Simulation {
                 *new = *node;
             }
         }
-        let cells = self.active.elements.len();
-        self.cells.sums.resize(cells, CellSums::default());
-        self.cells.pairs.resize(cells, CellPairs::default());
-        self.cells.stresses.resize(cells, CellStress::default());
-        self.cells.forces.resize(cells, CellForce::default());
-        self.cells.nodal.resize(cells, [Vec3::ZERO; 4]);
-        self.cells.exchange.resize(cells, [Vec3::ZERO; 4]);
-        self.cells.weights.resize(cells, [0.0; 2]);
-        self.cells.strains.resize(cells, CellStrain::default());
+        self.shared.renew(&self.nodes);
+        self.cells.renew(&self.active, &self.plan.mesh);
     }
 
     pub(crate) fn no_time_step(&self, error: TimeStepError) -> Stop {
@@ -459,7 +426,7 @@ impl Simulation {
             body: self.plan.bodies[usize::from(self.particles.body[particle])]
                 .name
                 .clone(),
-            position: self.particles.position[particle],
+            position: self.particles.position.at(particle),
             stage: self.plan.stages[self.clock.stage].name.clone(),
             time: self.clock.time,
         }
@@ -470,7 +437,7 @@ impl Simulation {
 fn ground(
     plan: &Plan,
     particles: &mut Particles,
-    offsets: &[u32],
+    order: &Order,
     contacts: &Contacts,
 ) -> Result<(Vec<LoadPoint>, Option<Ground>), SetupError> {
     let ground = plan.initial_stress.as_ref().map(|setting| {
@@ -485,7 +452,7 @@ fn ground(
         for n in contacts.nodes_of_faces() {
             held[n as usize] = true;
         }
-        let filled = (&*particles, offsets);
+        let filled = (&*particles, order);
         let soils = (&plan.bodies[..], &plan.materials[..]);
         let held = |n: u32| held[n as usize];
         Ground::new(setting, &plan.mesh, soils, plan.gravity, filled, held).map(|g| (g, setting))
@@ -519,7 +486,7 @@ fn ground(
         &plan.mesh,
         (plan.loads.iter().enumerate()).filter(|l| plan.there_at_the_start(l.1.body)),
         particles,
-        offsets,
+        order,
         &surroundings,
     )?;
     Ok((points, ground.map(|g| g.0)))

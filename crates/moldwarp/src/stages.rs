@@ -1,12 +1,12 @@
 //! How stages begin and end.
 
+use crate::Mat3;
 use crate::boundary::{Absorbing, Constraints, surface_nodes};
 use crate::material::Material;
 use crate::measure::Watch;
 use crate::mesh::{Driven, Face, Follower, Mesh, MotionError, Walls, Zones};
 use crate::plan::{Boundary, BoundaryKind, Plan, Until};
 use crate::simulation::{Simulation, Stop};
-use crate::{Mat3, Vec3};
 
 impl Simulation {
     /// Makes the changes of the stage that begins, and its first half kick.
@@ -40,7 +40,7 @@ impl Simulation {
             })?;
         }
         if reset {
-            self.particles.displacement.fill(Vec3::ZERO);
+            self.particles.reset_displacements();
             self.probes.reset_displacement();
         }
         if gives || first {
@@ -53,10 +53,12 @@ impl Simulation {
     fn give_velocities(&mut self) {
         let given = &self.plan.stages[self.clock.stage].initial_velocities;
         for &(body, velocity) in given {
-            let particles = self.particles.velocity.iter_mut().zip(&self.particles.body);
-            particles
-                .filter(|p| usize::from(*p.1) == body)
-                .for_each(|(v, _)| *v = velocity);
+            let particles = &mut self.particles;
+            for p in 0..particles.len() {
+                if usize::from(particles.body[p]) == body {
+                    particles.velocity.set(p, velocity);
+                }
+            }
         }
         self.gave_velocities();
     }
@@ -68,7 +70,7 @@ impl Simulation {
         let kinetic = p
             .mass
             .iter()
-            .zip(&p.velocity)
+            .zip(p.velocity.iter())
             .map(|(m, v)| 0.5 * m * v.length_squared())
             .sum();
         self.ledger.give(kinetic);
@@ -101,7 +103,7 @@ impl Simulation {
         self.constraints = constraints;
         self.absorbing = absorbing;
         self.walls = walls;
-        self.activate();
+        self.reorder();
         Ok(())
     }
 
@@ -180,15 +182,13 @@ fn walls(mesh: &Mesh, boundaries: &[&Boundary]) -> Walls {
 }
 
 fn absorbing(sim: &Simulation, boundaries: &[&Boundary]) -> Absorbing {
-    let (plan, offsets) = (&sim.plan, &sim.order.offsets);
+    let plan = &sim.plan;
     Absorbing::new(&plan.mesh, boundaries, |face: Face| {
         let sides = [Some(face), plan.mesh.across(face)];
         sides.into_iter().flatten().find_map(|side| {
-            let first = offsets[side.element as usize];
-            (first < offsets[side.element as usize + 1]).then(|| {
-                let body = usize::from(sim.particles.body[first as usize]);
-                &plan.materials[plan.bodies[body].material]
-            })
+            let first = sim.particles_in(side.element).next()?;
+            let body = usize::from(sim.particles.body[first]);
+            Some(&plan.materials[plan.bodies[body].material])
         })
     })
 }

@@ -215,10 +215,10 @@ fn a_rigid_block_slides_as_coulomb_says() {
         assert!(e.residual.abs() < 1e-12 * sim.energy_turned_over());
         let p = sim.particles();
         let block: Vec<usize> = (0..p.len()).filter(|&i| p.body[i] == 1).collect();
-        let first = p.displacement[block[0]];
+        let first = p.displacement(block[0]);
         for &i in &block {
-            assert_eq!(p.stress[i], [0.0; 6]);
-            assert!((p.displacement[i] - first).length() < 1e-12);
+            assert_eq!(p.stress.at(i), [0.0; 6]);
+            assert!((p.displacement(i) - first).length() < 1e-12);
         }
     }
 }
@@ -299,7 +299,9 @@ fn particles_do_not_pass_an_aligned_face() {
     let sim = pressed(6e3);
     let p = sim.particles();
     let block = (0..p.len()).filter(|&i| p.body[i] == 1);
-    let lowest = block.map(|i| p.position[i].z).fold(f64::INFINITY, f64::min);
+    let lowest = block
+        .map(|i| p.position.at(i).z)
+        .fold(f64::INFINITY, f64::min);
     let put_back = sim.projections();
     println!("lowest particle at {lowest} m, {put_back:?}");
     assert!(lowest > BASE);

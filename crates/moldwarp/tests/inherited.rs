@@ -143,9 +143,9 @@ fn ground_at_rest_stays_at_rest_and_goes_on_as_if_the_run_did() {
     let (mut stress, mut moved) = (0.0f64, 0.0f64);
     for (i, k) in pairs {
         stress = (0..6).fold(stress, |m, c| {
-            m.max((a.stress[i][c] - b.stress[k][c]).abs())
+            m.max((a.stress.at(i)[c] - b.stress.at(k)[c]).abs())
         });
-        moved = moved.max((a.position[i] - b.position[k]).length());
+        moved = moved.max((a.position.at(i) - b.position.at(k)).length());
     }
     assert!(stress < 1e-6 * weight, "{stress} Pa");
     assert!(moved < 2e-9 * H, "{moved} m");
@@ -176,13 +176,13 @@ fn particles_are_found_in_another_mesh() {
     assert_eq!(p.total_mass(), left.total_mass());
     for (id, place) in p.places_by_id().into_iter().flatten().enumerate() {
         let (i, was) = (place as usize, left.id.iter().position(|&k| k == id as u32));
-        assert!(mesh.contains(p.element[i], p.position[i]));
+        assert!(mesh.contains(p.element[i], p.position.at(i)));
         let was = was.unwrap();
-        assert_eq!(p.position[i], left.position[was]);
-        assert_eq!(p.stress[i], left.stress[was]);
+        assert_eq!(p.position.at(i), left.position.at(was));
+        assert_eq!(p.stress.at(i), left.stress.at(was));
         assert_eq!(p.volume[i], left.volume[was]);
     }
-    assert!(p.displacement.iter().all(|&u| u == Vec3::ZERO));
+    assert!(p.displacements().all(|u| u == Vec3::ZERO));
 }
 
 /// The column's particles in the plan of `change`; another body fills what is above 2 m.

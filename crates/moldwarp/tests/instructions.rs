@@ -3,10 +3,11 @@
 mod collapse;
 
 use collapse::collapse;
-use moldwarp::{Simd, Simulation, Vec3};
+use moldwarp::particles::{Tensors, Vectors};
+use moldwarp::{Simd, Simulation};
 
 /// Positions, stresses and energies of a block after it has begun to flow.
-fn collapsed(simd: Simd, threads: usize) -> (Vec<Vec3>, Vec<[f64; 6]>, [f64; 17]) {
+fn collapsed(simd: Simd, threads: usize) -> (Vectors, Tensors, [f64; 17]) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build().unwrap().install(|| {
         let mut sim = Simulation::new(collapse(6, 0.0)).unwrap();
@@ -14,7 +15,7 @@ fn collapsed(simd: Simd, threads: usize) -> (Vec<Vec3>, Vec<[f64; 6]>, [f64; 17]
         (0..300).for_each(|_| sim.step().unwrap());
         let p = sim.particles();
         let places = p.places_by_id();
-        let moved = |&p: &Option<u32>| sim.particles().displacement[p.unwrap() as usize].length();
+        let moved = |&p: &Option<u32>| sim.particles().displacement(p.unwrap() as usize).length();
         let farthest = places.iter().map(moved).fold(0.0, f64::max);
         assert!(farthest > 0.1, "it flows: {farthest}");
         (

@@ -135,7 +135,11 @@ fn particles_of_the_driver_keep_their_places() {
         let own = (0..p.len()).filter(|&i| p.body[i] == 1);
         let place = |i: usize| {
             let e = p.element[i];
-            (p.id[i], e, s.mesh().barycentric(e as usize, p.position[i]))
+            (
+                p.id[i],
+                e,
+                s.mesh().barycentric(e as usize, p.position.at(i)),
+            )
         };
         let mut places: Vec<_> = own.map(place).collect();
         places.sort_by_key(|p| p.0);
@@ -148,7 +152,7 @@ fn particles_of_the_driver_keep_their_places() {
     let p = sim.particles();
     let own = (0..p.len()).filter(|&i| p.body[i] == 1);
     let way = own
-        .map(|i| -p.displacement[i].z)
+        .map(|i| -p.displacement(i).z)
         .fold(f64::INFINITY, f64::min);
     for (now, then) in places(&sim).iter().zip(&before) {
         assert_eq!((now.0, now.1), (then.0, then.1));

@@ -84,7 +84,7 @@ fn run(plan: Plan) -> Simulation {
 }
 
 fn greatest_displacement(sim: &Simulation) -> f64 {
-    let lengths = sim.particles().displacement.iter().map(|u| u.length());
+    let lengths = sim.particles().displacements().map(|u| u.length());
     lengths.fold(0.0, f64::max)
 }
 
@@ -93,7 +93,7 @@ fn greatest_displacement(sim: &Simulation) -> f64 {
 fn the_stress_of_layers_is_the_weight_above() {
     let sim = Simulation::new(ground(BoundaryKind::Roller)).unwrap();
     let p = sim.particles();
-    for (x, stress) in p.position.iter().zip(&p.stress) {
+    for (x, stress) in p.position.iter().zip(p.stress.iter()) {
         let (vertical, k0) = match x.z {
             z if z > 2.0 => (-1600.0 * G * (3.0 - z), 0.5),
             z => (-G * (1600.0 + 2000.0 * (2.0 - z)), 0.4),

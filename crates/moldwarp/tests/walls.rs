@@ -96,15 +96,17 @@ fn nothing_goes_through_a_wall() {
     let (both, alone) = (thrown(halves(true)), thrown(halves(false)));
     let p = both.particles();
     for i in (0..p.len()).filter(|&i| p.body[i] == 1) {
-        assert_eq!((p.velocity[i], p.stress[i]), (Vec3::ZERO, [0.0; 6]));
+        assert_eq!((p.velocity.at(i), p.stress.at(i)), (Vec3::ZERO, [0.0; 6]));
         assert_eq!(p.volume[i], p.initial_volume[i]);
     }
-    let above: Vec<usize> = (0..p.len()).filter(|&i| p.body[i] == 0).collect();
+    let places = p.places_by_id().into_iter().flatten();
+    let above: Vec<u32> = places.filter(|&i| p.body[i as usize] == 0).collect();
     let q = alone.particles();
     assert_eq!(above.len(), q.len());
-    for (k, &i) in above.iter().enumerate() {
-        assert_eq!(p.position[i], q.position[k]);
-        assert_eq!(p.stress[i], q.stress[k]);
+    for (&i, k) in above.iter().zip(q.places_by_id().into_iter().flatten()) {
+        let (i, k) = (i as usize, k as usize);
+        assert_eq!(p.position.at(i), q.position.at(k));
+        assert_eq!(p.stress.at(i), q.stress.at(k));
     }
     assert!(q.stress.iter().any(|s| s[2].abs() > 1e3), "it hit the wall");
     let mut reaction = Vec::new();

@@ -59,7 +59,7 @@ fn state(s: &Simulation, thickness: f64) -> State {
     let opening = fields.iter().position(|f| f.name == "opening");
     let opening = opening.expect("sand can open");
     let opened: f64 = (0..p.len())
-        .map(|i| p.state[i][opening] * p.initial_volume[i])
+        .map(|i| p.state.at(i)[opening] * p.initial_volume[i])
         .sum();
     State {
         released: -e.gravity / thickness,

@@ -69,7 +69,7 @@ struct Deposit {
 
 fn deposit(s: &Simulation) -> Deposit {
     let p = s.particles();
-    let radius = |i: usize| p.position[i].truncate().length();
+    let radius = |i: usize| p.position.at(i).truncate().length();
     let mut order: Vec<usize> = (0..p.len()).collect();
     order.sort_by(|&i, &j| radius(i).total_cmp(&radius(j)));
     let whole: f64 = p.mass.iter().sum();
@@ -83,7 +83,7 @@ fn deposit(s: &Simulation) -> Deposit {
     let volume = |solid: bool| {
         let share = |i: usize| {
             if solid {
-                soil.solid_share(&p.state[i])
+                soil.solid_share(&p.state.at(i))
             } else {
                 1.0
             }
@@ -96,7 +96,7 @@ fn deposit(s: &Simulation) -> Deposit {
         while profile.len() <= ring {
             profile.push((RING * (profile.len() as f64 + 0.5), 0.0));
         }
-        profile[ring].1 = profile[ring].1.max(p.position[i].z);
+        profile[ring].1 = profile[ring].1.max(p.position.at(i).z);
     }
     Deposit {
         radius: [
@@ -105,7 +105,7 @@ fn deposit(s: &Simulation) -> Deposit {
         ],
         height: (0..p.len())
             .filter(|&i| radius(i) < 0.25)
-            .map(|i| p.position[i].z)
+            .map(|i| p.position.at(i).z)
             .fold(0.0, f64::max),
         volume: [volume(true), volume(false)],
         profile,

@@ -90,7 +90,7 @@ impl Mode {
             energy.push((s.time() / period, whole));
             let p = s.particles();
             let top: f64 = (0..p.len())
-                .map(|i| p.displacement[i].z * shape(p.position[i]))
+                .map(|i| p.displacement(i).z * shape(p.position.at(i)))
                 .sum();
             amplitude.push((s.time(), top));
         });

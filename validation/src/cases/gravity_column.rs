@@ -176,7 +176,7 @@ fn at_rest(report: &mut Report, fidelity: Fidelity) {
     setup::run(plan, |s| {
         if s.stage() == 2 {
             let p = s.particles();
-            for (x, stress) in p.position.iter().zip(&p.stress) {
+            for (x, stress) in p.position.iter().zip(p.stress.iter()) {
                 worst = worst.max((stress[2] + DENSITY * G * (1.0 - x.z)).abs());
             }
             energies = Some(s.energies());

@@ -87,20 +87,16 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
         }
         let places = p.places_by_id();
         let start = rest.get_or_insert_with(|| {
-            o.settled = p
-                .displacement
-                .iter()
-                .map(|u| u.length())
-                .fold(0.0, f64::max)
-                / HEIGHT;
+            let lengths = p.displacements().map(|u| u.length());
+            o.settled = lengths.fold(0.0, f64::max) / HEIGHT;
             places
                 .iter()
                 .flatten()
-                .map(|&i| p.position[i as usize])
+                .map(|&i| p.position.at(i as usize))
                 .collect()
         });
         let place = |id: usize| places[id].expect("all stay") as usize;
-        let moved = |id: usize| (p.position[place(id)] - start[id]).length();
+        let moved = |id: usize| (p.position.at(place(id)) - start[id]).length();
         let far = (0..start.len()).max_by(|&a, &b| moved(a).total_cmp(&moved(b)));
         let far = far.expect("a heap has particles");
         if moved(far) / HEIGHT > o.moved {
@@ -108,8 +104,9 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
         }
         if s.finished() {
             (o.slope, o.surface) = surface(s, HEIGHT / n as f64);
-            let far = |of: &[Vec3]| of.iter().map(|x| x.x).fold(0.0, f64::max);
-            (o.reach, o.wall) = (far(&p.position), far(&s.mesh().nodes));
+            let far = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
+            o.reach = far(p.position.components()[0]);
+            o.wall = s.mesh().nodes.iter().map(|x| x.x).fold(0.0, f64::max);
         }
     });
     (o, balance)
@@ -120,7 +117,7 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
 fn surface(s: &Simulation, h: f64) -> (f64, Vec<(f64, f64)>) {
     let p = s.particles();
     let mut top: Vec<(f64, f64)> = Vec::new();
-    for x in &p.position {
+    for x in p.position.iter() {
         let column = (x.x / h) as usize;
         top.resize(top.len().max(column + 1), (0.0, f64::NEG_INFINITY));
         if x.z > top[column].1 {

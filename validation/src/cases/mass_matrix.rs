@@ -93,7 +93,7 @@ fn free_vibration(n: usize, mass: MassMatrix) -> (f64, f64) {
         signal.push((
             s.time(),
             (0..p.len())
-                .map(|i| p.displacement[i].z * shape(p.position[i]))
+                .map(|i| p.displacement(i).z * shape(p.position.at(i)))
                 .sum(),
         ));
         last = s.energies().kinetic + s.energies().elastic;

@@ -98,15 +98,15 @@ fn compress(n: usize, curve: &mut Vec<(f64, f64)>) -> Rest {
         let top = setup::value(s, "top.position.z");
         rest.top = top / *first.get_or_insert(top);
         let p = s.particles();
-        let start = |i: usize| p.position[i].z - p.displacement[i].z;
+        let start = |i: usize| p.position.at(i).z - p.displacement(i).z;
         let middle: Vec<usize> = (0..p.len())
             .filter(|&i| (start(i) - 0.5).abs() < 0.25)
             .collect();
         let mean = |value: &dyn Fn(usize) -> f64| {
             middle.iter().map(|&i| value(i)).sum::<f64>() / middle.len() as f64
         };
-        rest.stretch = mean(&|i| p.position[i].z / start(i));
-        rest.pressure = mean(&|i| -p.stress[i][2] / LOAD);
+        rest.stretch = mean(&|i| p.position.at(i).z / start(i));
+        rest.pressure = mean(&|i| -p.stress.at(i)[2] / LOAD);
         curve.push(((s.time() / ramp).min(1.0) * LOAD / E, rest.stretch));
     });
     rest

@@ -124,14 +124,14 @@ fn judge(s: &Simulation, poisson: f64) -> Rest {
     let (mut profile, mut rings) = (Vec::new(), Vec::new());
     for i in 0..p.len() {
         let (x, u, v) = (
-            p.position[i] - p.displacement[i],
-            p.displacement[i],
+            p.position.at(i) - p.displacement(i),
+            p.displacement(i),
             p.volume[i],
         );
         let r = x.x.hypot(x.y);
         let (c, d) = (x.x / r, x.y / r);
         let (u_r, u_t) = (c * u.x + d * u.y, c * u.y - d * u.x);
-        let [xx, yy, zz, xy, ..] = p.stress[i];
+        let [xx, yy, zz, xy, ..] = p.stress.at(i);
         let radial = c * c * xx + d * d * yy + 2.0 * c * d * xy;
         let hoop = xx + yy - radial;
         let shear = c * d * (yy - xx) + (c * c - d * d) * xy;

@@ -111,10 +111,11 @@ pub fn scene_hash(plan: &Plan) -> String {
 /// What counts of inherited particles.
 fn inherited_particles(h: &mut Hasher, p: &Particles) {
     h.numbers("inherited", p.body.iter().map(|&b| b.into()));
-    h.vectors("position", p.position.iter().copied());
-    let (stress, state) = (p.stress.as_flattened(), p.state.as_flattened());
-    h.floats("stress", stress.iter().copied());
-    h.floats("state", state.iter().copied());
+    h.vectors("position", p.position.iter());
+    let (stress, state) = (p.stress.components(), p.state.components());
+    for component in stress.into_iter().chain(state) {
+        h.floats("stress and state", component.iter().copied());
+    }
     h.floats("volume", p.volume.iter().copied());
     h.floats("initial_volume", p.initial_volume.iter().copied());
     h.floats("mass", p.mass.iter().copied());

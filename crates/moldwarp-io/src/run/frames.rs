@@ -6,7 +6,8 @@ use crate::output::{FileError, Folder};
 use moldwarp::NodeFields;
 use moldwarp::material::StateField;
 use moldwarp::particles::Particles;
-use moldwarp::{Simulation, tensor};
+use moldwarp::tensor::Voigt;
+use moldwarp::{Simulation, Vec3, tensor};
 
 /// Writes frames of the particles and of the mesh into a folder.
 #[derive(Debug)]
@@ -59,9 +60,12 @@ pub(crate) struct Field<V> {
 type OfParticles = for<'a> fn(&'a Particles, &'a Derived) -> Data<'a>;
 type OfNodes = for<'a> fn(&'a NodeFields) -> Data<'a>;
 
-/// What is computed from the particles for a frame.
+/// What is computed from the particles for a frame, or put together.
 #[derive(Default)]
 pub(crate) struct Derived {
+    velocity: Vec<Vec3>,
+    displacement: Vec<Vec3>,
+    stress: Vec<Voigt>,
     pressure: Vec<f64>,
     deviatoric: Vec<f64>,
     density: Vec<f64>,
@@ -85,19 +89,19 @@ pub(crate) const PARTICLE_FIELDS: [Field<OfParticles>; 8] = [
         name: "velocity",
         label: "m/s",
         meaning: "Of the middle of the coming step; at the end of the run of that instant.",
-        values: |p, _| Data::Vectors(&p.velocity),
+        values: |_, d| Data::Vectors(&d.velocity),
     },
     Field {
         name: "displacement",
         label: "m",
         meaning: "Since the start, or since a stage has reset it.",
-        values: |p, _| Data::Vectors(&p.displacement),
+        values: |_, d| Data::Vectors(&d.displacement),
     },
     Field {
         name: "stress",
         label: "Pa, tension positive",
         meaning: "Cauchy stress σ.",
-        values: |p, _| Data::Tensors(&p.stress),
+        values: |_, d| Data::Tensors(&d.stress),
     },
     Field {
         name: "mean_pressure",
@@ -151,8 +155,11 @@ pub(super) fn write_particles(
 ) -> Result<(), FileError> {
     let p = sim.particles();
     let derived = Derived {
-        pressure: p.stress.iter().map(mean_pressure).collect(),
-        deviatoric: p.stress.iter().map(tensor::equivalent).collect(),
+        velocity: p.velocity.iter().collect(),
+        displacement: p.displacements().collect(),
+        stress: p.stress.iter().collect(),
+        pressure: p.stress.iter().map(|s| mean_pressure(&s)).collect(),
+        deviatoric: p.stress.iter().map(|s| tensor::equivalent(&s)).collect(),
         density: p.mass.iter().zip(&p.volume).map(|(m, v)| m / v).collect(),
     };
     let states = state_fields(sim);
@@ -163,7 +170,8 @@ pub(super) fn write_particles(
         .iter()
         .map(|(field, values)| Array::new(field.name, Data::F64(values), field.unit));
     let fields: Vec<Array> = own.chain(of_models).chain(more.iter().copied()).collect();
-    vtu::write_points(path, sim.time(), &p.position, &fields, texts)
+    let positions: Vec<Vec3> = p.position.iter().collect();
+    vtu::write_points(path, sim.time(), &positions, &fields, texts)
 }
 
 /// The state variables of all models by name; 0 for particles of models that have none of a name.
@@ -179,7 +187,7 @@ fn state_fields(sim: &Simulation) -> Vec<(StateField, Vec<f64>)> {
     let value = |p: usize, name: &str| {
         let own = model(particles.body[p]).state_fields();
         let at = own.iter().position(|f| f.name == name);
-        at.map_or(0.0, |at| particles.state[p][at])
+        at.map_or(0.0, |at| particles.state.at(p)[at])
     };
     fields
         .into_iter()

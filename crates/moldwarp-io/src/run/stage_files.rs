@@ -7,8 +7,10 @@ use super::frames::write_particles;
 use crate::output::vtu::{Array, Data, Texts};
 use crate::output::vtu_read::{Frame, VtuError, read};
 use crate::output::{FileError, Folder};
-use moldwarp::particles::Particles;
+use moldwarp::material::State;
+use moldwarp::particles::{Particles, Vectors};
 use moldwarp::{Simulation, Vec3};
+use std::iter::repeat_n;
 use std::path::Path;
 
 /// Of the stage files, after those of the frames, with the unit.
@@ -101,17 +103,17 @@ impl StageFile {
             .map(body)
             .collect::<Option<_>>()?;
         let stress = field("stress", 6)?.as_chunks().0;
+        let positions = order.iter().map(|&p| Vec3::from_array(frame.points[p]));
+        let position: Vectors = positions.collect();
         let particles = Particles {
             id: (0..count as u32).collect(),
             body: numbers("body")?.iter().map(|&b| b as u16).collect(),
             element: vec![0; count],
-            position: (order.iter())
-                .map(|&p| Vec3::from_array(frame.points[p]))
-                .collect(),
-            velocity: vec![Vec3::ZERO; count],
-            displacement: vec![Vec3::ZERO; count],
+            origin: position.clone(),
+            position,
+            velocity: repeat_n(Vec3::ZERO, count).collect(),
             stress: order.iter().map(|&p| stress[p]).collect(),
-            state: vec![Default::default(); count],
+            state: repeat_n(State::default(), count).collect(),
             volume: numbers("volume")?,
             initial_volume: numbers("initial_volume")?,
             mass: numbers("mass")?,

@@ -16,7 +16,7 @@ pub fn state_hash(sim: &Simulation) -> String {
         element,
         position,
         velocity,
-        displacement,
+        origin,
         stress,
         state,
         volume,
@@ -30,14 +30,14 @@ pub fn state_hash(sim: &Simulation) -> String {
     h.numbers("id", by_id().map(|p| id[p].into()));
     h.numbers("body", by_id().map(|p| body[p].into()));
     h.numbers("element", by_id().map(|p| element[p].into()));
-    h.vectors("position", by_id().map(|p| position[p]));
-    h.vectors("velocity", by_id().map(|p| velocity[p]));
-    h.vectors("displacement", by_id().map(|p| displacement[p]));
+    h.vectors("position", by_id().map(|p| position.at(p)));
+    h.vectors("velocity", by_id().map(|p| velocity.at(p)));
+    h.vectors("origin", by_id().map(|p| origin.at(p)));
     for c in 0..6 {
-        h.floats("stress", by_id().map(|p| stress[p][c]));
+        h.floats("stress", by_id().map(|p| stress.components()[c][p]));
     }
     for c in 0..STATE_SIZE {
-        h.floats("state", by_id().map(|p| state[p][c]));
+        h.floats("state", by_id().map(|p| state.components()[c][p]));
     }
     h.floats("volume", by_id().map(|p| volume[p]));
     h.floats("initial_volume", by_id().map(|p| initial_volume[p]));

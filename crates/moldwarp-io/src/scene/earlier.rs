@@ -166,7 +166,7 @@ fn take_over(file: StageFile, scene: &mut Scene, earlier: &Earlier) -> Result<()
             };
             let of_body = |p: &usize| usize::from(particles.body[*p]) == theirs;
             for p in (0..particles.body.len()).filter(of_body) {
-                particles.state[p][at] = values[p];
+                particles.state.components_mut()[at][p] = values[p];
             }
         }
     }

@@ -13,7 +13,7 @@ fn the_ground_around_the_tunnel_is_at_rest() {
     let mut sim = Simulation::new(scene.plan).unwrap();
     let unit_weight = 16e3 / 9.81 * 9.81;
     let p = sim.particles();
-    for (x, stress) in p.position.iter().zip(&p.stress) {
+    for (x, stress) in p.position.iter().zip(p.stress.iter()) {
         let vertical = unit_weight * x.z;
         let expected = [0.5 * vertical, 0.5 * vertical, vertical, 0.0, 0.0, 0.0];
         let close = |(a, b): (&f64, f64)| (a - b).abs() < 1e-12 * unit_weight * 26.0;

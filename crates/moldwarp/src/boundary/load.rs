@@ -8,7 +8,7 @@
 
 use crate::Vec3;
 use crate::mesh::{Face, Mesh};
-use crate::particles::Particles;
+use crate::particles::{Order, Particles};
 use crate::plan::{Load, LoadKind};
 use crate::tensor::{self, Voigt};
 
@@ -50,12 +50,12 @@ pub struct Surroundings<'a> {
     pub stress: &'a dyn Fn(usize, Vec3) -> Voigt,
 }
 
-/// The points of loads, each given with its number. `offsets` are the first particles of the elements.
+/// The points of loads, each given with its number.
 pub fn load_points<'a>(
     mesh: &Mesh,
     loads: impl Iterator<Item = (usize, &'a Load)>,
     particles: &Particles,
-    offsets: &[u32],
+    order: &Order,
     ground: &Surroundings,
 ) -> Result<Vec<LoadPoint>, LoadError> {
     let mut points = Vec::new();
@@ -68,7 +68,7 @@ pub fn load_points<'a>(
         let total: f64 = faces.iter().map(|&f| mesh.face_area(f).length()).sum();
         let mut missing = 0;
         for &face in &faces {
-            let Some(side) = side_of_body(mesh, face, load.body, particles, offsets) else {
+            let Some(side) = side_of_body(mesh, face, load.body, particles, order) else {
                 missing += 1;
                 continue;
             };
@@ -87,8 +87,8 @@ pub fn load_points<'a>(
             let corners = mesh.face_nodes(side).map(|n| mesh.nodes[n as usize]);
             for weights in POINTS {
                 let x: Vec3 = (0..3).map(|i| corners[i] * weights[i]).sum();
-                let particle = nearest(x, side.element, load.body, particles, offsets);
-                let offset = x - particles.position[particle as usize];
+                let particle = nearest(x, side.element, load.body, particles, order);
+                let offset = x - particles.position.at(particle as usize);
                 points.push(LoadPoint {
                     load: number as u32,
                     particle,
@@ -108,29 +108,26 @@ pub fn load_points<'a>(
     Ok(points)
 }
 
-fn in_element(e: u32, offsets: &[u32]) -> std::ops::Range<usize> {
-    offsets[e as usize] as usize..offsets[e as usize + 1] as usize
-}
-
 /// The face seen from the element that holds particles of the body.
 fn side_of_body(
     mesh: &Mesh,
     face: Face,
     body: usize,
     particles: &Particles,
-    offsets: &[u32],
+    order: &Order,
 ) -> Option<Face> {
-    let holds =
-        |f: &Face| in_element(f.element, offsets).any(|p| usize::from(particles.body[p]) == body);
+    let own = |p: &u32| usize::from(particles.body[*p as usize]) == body;
+    let holds = |f: &Face| order.inside(f.element as usize).iter().any(own);
     Some(face)
         .filter(holds)
         .or_else(|| mesh.across(face).filter(holds))
 }
 
-fn nearest(x: Vec3, e: u32, body: usize, particles: &Particles, offsets: &[u32]) -> u32 {
-    let distance = |p: &usize| (particles.position[*p] - x).length_squared();
-    in_element(e, offsets)
-        .filter(|&p| usize::from(particles.body[p]) == body)
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .expect("the side of the body holds its particles") as u32
+fn nearest(x: Vec3, e: u32, body: usize, particles: &Particles, order: &Order) -> u32 {
+    let distance = |p: u32| (particles.position.at(p as usize) - x).length_squared();
+    let inside = order.inside(e as usize).iter().copied();
+    inside
+        .filter(|&p| usize::from(particles.body[p as usize]) == body)
+        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        .expect("the side of the body holds its particles")
 }

@@ -19,7 +19,7 @@ pub(super) fn depths(mesh: &Mesh, bodies: &[Body], particles: &Particles) -> Vec
         .collect();
     let depth = |p: usize| {
         let surface = &surfaces[usize::from(particles.body[p])];
-        surface.depth(mesh, particles.element[p], particles.position[p])
+        surface.depth(mesh, particles.element[p], particles.position.at(p))
     };
     (0..particles.len()).map(depth).collect()
 }

@@ -19,7 +19,7 @@ pub use separation::{Ball, outermost, separate};
 
 use crate::Vec3;
 use crate::mesh::{Face, Mesh, NONE};
-use crate::particles::Particles;
+use crate::particles::{Order, Particles};
 use crate::plan::{Contact, ContactSurface, Plan};
 use crate::step::Active;
 
@@ -100,12 +100,11 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// `offsets` are the first particles of the elements.
     pub fn new(
         plan: &Plan,
         fields: &Fields,
         particles: &Particles,
-        offsets: &[u32],
+        order: &Order,
     ) -> Result<Contacts, ContactError> {
         let count = fields.count();
         let mut contacts = Contacts {
@@ -122,7 +121,7 @@ impl Contacts {
             contacts.first.push(a);
             contacts.faces.push(Vec::new());
             if contact.surface == ContactSurface::Aligned {
-                let inside = elements(&plan.mesh, contact, particles, offsets)?;
+                let inside = elements(&plan.mesh, contact, particles, order)?;
                 contacts.faces[number] = depth::faces_by_node(&plan.mesh, &inside);
                 contacts.structure.resize(inside.len(), NONE);
                 let own = contacts.structure.iter_mut().zip(inside).filter(|e| e.1);
@@ -343,11 +342,11 @@ fn elements(
     mesh: &Mesh,
     contact: &Contact,
     particles: &Particles,
-    offsets: &[u32],
+    order: &Order,
 ) -> Result<Vec<bool>, ContactError> {
     let mut inside = vec![false; mesh.tets.len()];
     for (e, inside) in inside.iter_mut().enumerate() {
-        let held = offsets[e] as usize..offsets[e + 1] as usize;
+        let held = order.inside(e).iter().map(|&p| p as usize);
         let own = |&p: &usize| contact.bodies[0].contains(&usize::from(particles.body[p]));
         let volume: f64 = held.filter(own).map(|p| particles.volume[p]).sum();
         *inside = volume > 0.0;

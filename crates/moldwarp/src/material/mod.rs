@@ -121,6 +121,15 @@ impl Material {
         }
     }
 
+    /// Number of the state variable that is zero as long as a particle has not opened in tension; none
+    /// where the material never does.
+    pub fn opening(&self) -> Option<usize> {
+        match self {
+            Material::LinearElastic(_) | Material::Rigid => None,
+            Material::MohrCoulomb(_) => Some(mohr_coulomb::OPENING),
+        }
+    }
+
     /// Share of a particle's volume that is soil: the rest has opened in tension and holds none.
     #[inline]
     pub fn solid_share(&self, state: &State) -> f64 {

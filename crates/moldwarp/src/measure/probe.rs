@@ -9,7 +9,7 @@ use crate::Vec3;
 use crate::contact::Contacts;
 use crate::mesh::Mesh;
 use crate::parallel::fold;
-use crate::particles::Particles;
+use crate::particles::{Order, Particles};
 use crate::plan::{Plan, Probe, Quantity, Target};
 use crate::simulation::Simulation;
 use crate::tensor::Voigt;
@@ -48,15 +48,14 @@ pub struct Probes {
 }
 
 impl Probes {
-    /// `offsets` are the first particles of the elements.
-    pub(crate) fn new(plan: &Plan, particles: &Particles, offsets: &[u32]) -> Probes {
+    pub(crate) fn new(plan: &Plan, particles: &Particles, order: &Order) -> Probes {
         let place = |probe: &Probe| match probe.target {
             Target::Surface(s) if plan.boundaries.iter().any(|b| b.surfaces.contains(&s)) => {
-                boundary_surface(&plan.mesh, s, offsets)
+                boundary_surface(&plan.mesh, s, order)
             }
-            Target::Surface(s) => Place::Particles(next_to(&plan.mesh, s, offsets)),
+            Target::Surface(s) => Place::Particles(next_to(&plan.mesh, s, order)),
             Target::Point(x) => {
-                let distance = |p: &usize| (particles.position[*p] - x).length_squared();
+                let distance = |p: &usize| (particles.position.at(*p) - x).length_squared();
                 let nearest =
                     (0..particles.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
                 Place::Particles(vec![(nearest.unwrap_or(0) as u32, 1.0)])
@@ -88,10 +87,10 @@ impl Probes {
     }
 
     /// Surfaces with a boundary have other elements beside them, as bodies have come or gone.
-    pub(crate) fn bodies_changed(&mut self, plan: &Plan, offsets: &[u32]) {
+    pub(crate) fn bodies_changed(&mut self, plan: &Plan, order: &Order) {
         for (place, probe) in self.places.iter_mut().zip(&plan.probes) {
             if let (Place::Nodes { elements, .. }, Target::Surface(s)) = (place, probe.target) {
-                *elements = occupied_elements(&plan.mesh, s, offsets);
+                *elements = occupied_elements(&plan.mesh, s, order);
             }
         }
     }
@@ -210,7 +209,7 @@ impl Place {
         let solid = |p: usize| {
             let body = &plan.bodies[usize::from(particles.body[p])];
             let model = &plan.materials[body.material].model;
-            particles.volume[p] * model.solid_share(&particles.state[p])
+            particles.volume[p] * model.solid_share(&particles.state.at(p))
         };
         // The sum of nothing is −0.
         let volume: f64 = match self {
@@ -242,12 +241,12 @@ impl Place {
                 for &(p, weight) in particles {
                     crate::tensor::add_scaled(
                         &mut mean,
-                        &sim.particles().stress[p as usize],
+                        &sim.particles().stress.at(p as usize),
                         weight,
                     );
                 }
             }
-            Place::Body(body) => mean = body_mean(sim, *body, |p| sim.particles().stress[p]),
+            Place::Body(body) => mean = body_mean(sim, *body, |p| sim.particles().stress.at(p)),
             Place::Volume(_) => {}
         }
         mean
@@ -273,9 +272,9 @@ impl SurfaceNode {
 fn particle_vector(sim: &Simulation, p: usize, quantity: Quantity) -> Vec3 {
     let particles = sim.particles();
     match quantity {
-        Quantity::Displacement => particles.displacement[p],
-        Quantity::Position => particles.position[p],
-        Quantity::Velocity => particles.velocity[p],
+        Quantity::Displacement => particles.displacement(p),
+        Quantity::Position => particles.position.at(p),
+        Quantity::Velocity => particles.velocity.at(p),
         Quantity::Acceleration => sim.acceleration_at(p),
         Quantity::Reaction
         | Quantity::Stress
@@ -308,7 +307,7 @@ where
     sum.map(|x| x / mass)
 }
 
-fn boundary_surface(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Place {
+fn boundary_surface(mesh: &Mesh, surface: usize, order: &Order) -> Place {
     let faces = &mesh.surfaces[surface].faces;
     let area: f64 = faces.iter().map(|&f| mesh.face_area(f).length()).sum();
     let mut shares: Vec<(u32, f64)> = faces
@@ -327,13 +326,13 @@ fn boundary_surface(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Place {
     });
     Place::Nodes {
         nodes: nodes.collect(),
-        elements: occupied_elements(mesh, surface, offsets),
+        elements: occupied_elements(mesh, surface, order),
     }
 }
 
 /// Elements with particles next to a surface, with their shares of its area.
-fn occupied_elements(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Vec<(u32, f64)> {
-    let occupied = |e: u32| offsets[e as usize] < offsets[e as usize + 1];
+fn occupied_elements(mesh: &Mesh, surface: usize, order: &Order) -> Vec<(u32, f64)> {
+    let occupied = |e: u32| !order.inside(e as usize).is_empty();
     let mut elements = Vec::new();
     for &face in &mesh.surfaces[surface].faces {
         let sides = [Some(face), mesh.across(face)];
@@ -349,13 +348,13 @@ fn occupied_elements(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Vec<(u32, 
 }
 
 /// Particles next to a surface; those of an element share its faces' area equally.
-fn next_to(mesh: &Mesh, surface: usize, offsets: &[u32]) -> Vec<(u32, f64)> {
-    occupied_elements(mesh, surface, offsets)
+fn next_to(mesh: &Mesh, surface: usize, order: &Order) -> Vec<(u32, f64)> {
+    occupied_elements(mesh, surface, order)
         .into_iter()
         .flat_map(|(e, weight)| {
-            let range = offsets[e as usize]..offsets[e as usize + 1];
-            let share = weight / f64::from(range.end - range.start);
-            range.map(move |p| (p, share))
+            let inside = order.inside(e as usize);
+            let share = weight / inside.len() as f64;
+            inside.iter().map(move |&p| (p, share))
         })
         .collect()
 }

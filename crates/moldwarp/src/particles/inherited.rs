@@ -54,7 +54,8 @@ pub(crate) fn bodies(plan: &Plan) -> Vec<bool> {
     inherits
 }
 
-/// Adds the inherited particles to the seeded ones; their ids count from `first_id`, in their order.
+/// Adds the inherited particles to the seeded ones; their ids count from `first_id`, in the order of those
+/// that they had.
 pub(crate) fn append(
     mut particles: Particles,
     plan: &Plan,
@@ -71,11 +72,17 @@ pub(crate) fn append(
     let element = locate(&plan.mesh, &plan.bodies, inherited)?;
     check_overlap(plan, &particles, &element)?;
     let count = inherited.len();
+    let mut by_id: Vec<usize> = (0..count).collect();
+    by_id.sort_unstable_by_key(|&p| inherited.id[p]);
+    let mut id = vec![0; count];
+    for (new, &p) in (first_id..).zip(&by_id) {
+        id[p] = new;
+    }
     particles.append(Particles {
-        id: (first_id..first_id + count as u32).collect(),
+        id,
         element,
-        velocity: vec![Vec3::ZERO; count],
-        displacement: vec![Vec3::ZERO; count],
+        velocity: std::iter::repeat_n(Vec3::ZERO, count).collect(),
+        origin: inherited.position.clone(),
         ..inherited.clone()
     });
     Ok(particles)
@@ -108,7 +115,7 @@ fn locate(mesh: &Mesh, bodies: &[Body], p: &Particles) -> Result<Vec<u32>, Inher
     let mut last = 0;
     let mut outside: Option<(usize, usize)> = None;
     let mut elements = Vec::with_capacity(p.len());
-    for (i, &x) in p.position.iter().enumerate() {
+    for (i, x) in p.position.iter().enumerate() {
         // A walk may end at a re-entrant corner though the mesh goes on behind it.
         let found = near(x).then(|| mesh.walk(last, x).or_else(|| mesh.find(x)));
         match (found.flatten(), &mut outside) {
@@ -123,7 +130,7 @@ fn locate(mesh: &Mesh, bodies: &[Body], p: &Particles) -> Result<Vec<u32>, Inher
         Some((first, count)) => Err(InheritedError::Outside {
             body: bodies[usize::from(p.body[first])].name.clone(),
             count,
-            position: p.position[first],
+            position: p.position.at(first),
         }),
     }
 }

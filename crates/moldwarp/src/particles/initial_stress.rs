@@ -6,7 +6,7 @@
 //! it exactly, nodal forces balance gravity to round-off. (With the stress of the element's centroid
 //! the ground would tremble.)
 
-use super::Particles;
+use super::{Order, Particles};
 use crate::Vec3;
 use crate::mesh::{FACE_NODES, Mesh};
 use crate::plan::{Body, NamedMaterial};
@@ -64,14 +64,14 @@ struct Layer {
 }
 
 impl Ground {
-    /// `offsets` are the first particles of the elements; `held` says whether anything holds or loads
+    /// `held` says whether anything holds or loads
     /// a mesh node, so that a face there needs not be the ground's surface.
     pub fn new(
         setting: &InitialStress,
         mesh: &Mesh,
         (bodies, materials): (&[Body], &[NamedMaterial]),
         gravity: Vec3,
-        (particles, offsets): (&Particles, &[u32]),
+        (particles, order): (&Particles, &Order),
         held: impl Fn(u32) -> bool,
     ) -> Result<Ground, InitialStressError> {
         let g = gravity.length();
@@ -79,7 +79,7 @@ impl Ground {
             return Err(InitialStressError::NoGravity);
         }
         let up = -gravity / g;
-        let owner = owners(setting, mesh, bodies, particles, offsets)?;
+        let owner = owners(setting, mesh, bodies, particles, order)?;
         let layers = layers(mesh, &owner, up, bodies, |b| {
             materials[bodies[b].material].density * g
         })?;
@@ -181,16 +181,15 @@ fn owners(
     mesh: &Mesh,
     bodies: &[Body],
     particles: &Particles,
-    offsets: &[u32],
+    order: &Order,
 ) -> Result<Vec<Option<usize>>, InitialStressError> {
     let mut owners = vec![None; mesh.tets.len()];
     for (e, owner) in owners.iter_mut().enumerate() {
-        let inside = offsets[e] as usize..offsets[e + 1] as usize;
-        let volume: f64 = particles.volume[inside.clone()].iter().sum();
+        let inside = order.inside(e);
+        let volume: f64 = inside.iter().map(|&p| particles.volume[p as usize]).sum();
         let body = inside
-            .clone()
-            .next()
-            .map(|p| usize::from(particles.body[p]));
+            .first()
+            .map(|&p| usize::from(particles.body[p as usize]));
         let Some(body) = body.filter(|&b| setting.k0[b].is_some()) else {
             continue;
         };
@@ -257,13 +256,13 @@ pub fn apply(
     for p in 0..particles.len() {
         let body = usize::from(particles.body[p]);
         let Some(k0) = setting.k0[body] else { continue };
-        let (position, body) = (particles.position[p], &bodies[body]);
+        let (position, body) = (particles.position.at(p), &bodies[body]);
         let stress = ground.stress(position, k0);
         if materials[body.material].model.yields(&stress) {
             let body = body.name.clone();
             return Err(InitialStressError::Yields { body, position });
         }
-        particles.stress[p] = stress;
+        particles.stress.set(p, stress);
     }
     Ok(())
 }

@@ -1,10 +1,12 @@
-//! Material points: a structure of arrays, ordered by the element they are in.
+//! Material points: a structure of arrays, in the order in which the step works on them.
 
+mod columns;
 pub(crate) mod inherited;
 pub mod initial_stress;
 mod order;
 mod seeding;
 
+pub use columns::{Columns, States, Tensors, Vectors};
 pub use inherited::InheritedError;
 pub use initial_stress::{InitialStress, InitialStressError};
 pub use order::Order;
@@ -12,7 +14,6 @@ pub use seeding::{Seed, SeedingError, check_overlap, particles, seeds};
 
 use crate::Vec3;
 use crate::material::State;
-use crate::tensor::Voigt;
 
 /// All particles. The arrays have the same length and order.
 #[derive(Clone, Debug, Default)]
@@ -24,15 +25,15 @@ pub struct Particles {
     /// The element each particle is in.
     pub element: Vec<u32>,
     /// m.
-    pub position: Vec<Vec3>,
+    pub position: Vectors,
     /// m/s. Between the steps of a stage it belongs to the middle of the coming step.
-    pub velocity: Vec<Vec3>,
-    /// Since the start, or since a stage has reset it, m.
-    pub displacement: Vec<Vec3>,
+    pub velocity: Vectors,
+    /// Where displacements count from: the position at the start, or when a stage has reset them, m.
+    pub origin: Vectors,
     /// Cauchy stress, Pa.
-    pub stress: Vec<Voigt>,
+    pub stress: Tensors,
     /// State variables of the material model.
-    pub state: Vec<State>,
+    pub state: States,
     /// m³.
     pub volume: Vec<f64>,
     /// m³.
@@ -50,6 +51,21 @@ impl Particles {
         self.id.is_empty()
     }
 
+    /// Since the start, or since a stage has reset it, m.
+    pub fn displacement(&self, place: usize) -> Vec3 {
+        self.position.at(place) - self.origin.at(place)
+    }
+
+    /// Of all particles, m.
+    pub fn displacements(&self) -> impl ExactSizeIterator<Item = Vec3> + '_ {
+        (0..self.len()).map(|place| self.displacement(place))
+    }
+
+    /// Displacements count from here.
+    pub(crate) fn reset_displacements(&mut self) {
+        self.origin.clone_from(&self.position);
+    }
+
     /// Total mass, kg.
     pub fn total_mass(&self) -> f64 {
         self.mass.iter().sum()
@@ -59,15 +75,15 @@ impl Particles {
     pub fn momentum(&self) -> Vec3 {
         self.mass
             .iter()
-            .zip(&self.velocity)
-            .map(|(&m, &v)| m * v)
+            .zip(self.velocity.iter())
+            .map(|(&m, v)| m * v)
             .sum()
     }
 
     /// Σ m x × v, kg m²/s.
     pub fn angular_momentum(&self) -> Vec3 {
         (0..self.len())
-            .map(|p| self.mass[p] * self.position[p].cross(self.velocity[p]))
+            .map(|p| self.mass[p] * self.position.at(p).cross(self.velocity.at(p)))
             .sum()
     }
 
@@ -82,18 +98,13 @@ impl Particles {
     }
 
     /// Puts others after these.
-    pub(crate) fn append(&mut self, others: Particles) {
-        self.id.extend(others.id);
-        self.body.extend(others.body);
-        self.element.extend(others.element);
-        self.position.extend(others.position);
-        self.velocity.extend(others.velocity);
-        self.displacement.extend(others.displacement);
-        self.stress.extend(others.stress);
-        self.state.extend(others.state);
-        self.volume.extend(others.volume);
-        self.initial_volume.extend(others.initial_volume);
-        self.mass.extend(others.mass);
+    pub(crate) fn append(&mut self, mut others: Particles) {
+        self.id.append(&mut others.id);
+        self.body.append(&mut others.body);
+        self.element.append(&mut others.element);
+        for (own, other) in self.columns_mut().zip(others.columns_mut()) {
+            own.append(other);
+        }
     }
 
     /// Keeps those whose place is marked, in their order.
@@ -101,14 +112,17 @@ impl Particles {
         retain(&mut self.id, keep);
         retain(&mut self.body, keep);
         retain(&mut self.element, keep);
-        retain(&mut self.position, keep);
-        retain(&mut self.velocity, keep);
-        retain(&mut self.displacement, keep);
-        retain(&mut self.stress, keep);
-        retain(&mut self.state, keep);
-        retain(&mut self.volume, keep);
-        retain(&mut self.initial_volume, keep);
-        retain(&mut self.mass, keep);
+        self.columns_mut().for_each(|column| retain(column, keep));
+    }
+
+    /// All numbers of particles, one array a component.
+    pub(crate) fn columns_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        (self.position.columns_mut().iter_mut())
+            .chain(self.velocity.columns_mut())
+            .chain(self.origin.columns_mut())
+            .chain(self.stress.columns_mut())
+            .chain(self.state.columns_mut())
+            .chain([&mut self.volume, &mut self.initial_volume, &mut self.mass])
     }
 }
 

@@ -1,76 +1,154 @@
-//! Keeping particles ordered by element, and within it by velocity field.
+//! Which particles are in which element, and keeping them in memory as the step wants them.
+//!
+//! The *rank* of a particle counts by element, and within it by velocity field; those of one element and
+//! field keep the order that they had. Its *place* is where it lies in the arrays: in [`Tiles`](crate::lanes::Tiles).
 
 use super::Particles;
-use crate::Vec3;
 use crate::contact::Fields;
-use crate::material::State;
-use crate::tensor::Voigt;
+use crate::parallel::fold;
+use std::ops::Range;
 
-/// Working arrays of the sort, kept so that no step allocates.
+/// Particles by element, and working arrays of the sort, kept so that no step allocates.
 #[derive(Clone, Debug, Default)]
 pub struct Order {
-    /// Number of the first particle of each element, and one past the last.
-    pub offsets: Vec<u32>,
+    /// Rank of the first particle of each element and field, and one past the last.
+    first: Vec<u32>,
+    fields: usize,
+    /// Place of each particle by rank.
+    places: Vec<u32>,
     /// Where each particle went in the last sort: new place by old place.
     pub destination: Vec<u32>,
-    vectors: Vec<Vec3>,
-    stresses: Vec<Voigt>,
-    states: Vec<State>,
+    /// The reverse.
+    source: Vec<u32>,
     numbers: Vec<f64>,
     indices: Vec<u32>,
     bodies: Vec<u16>,
 }
 
 impl Order {
-    /// Sorts by element and field, keeping the order within each (a counting sort).
-    pub fn sort(&mut self, particles: &mut Particles, elements: usize, fields: &Fields) {
-        let key = |e: u32, body: u16| e as usize * fields.count() + fields.of(body);
-        let keys = elements * fields.count();
-        let by_place = || particles.element.iter().zip(&particles.body);
-        self.offsets.clear();
-        self.offsets.resize(keys + 1, 0);
-        for (&e, &body) in by_place() {
-            self.offsets[key(e, body) + 1] += 1;
+    /// Particles of one field, wherever they are.
+    pub fn of(elements: &[u32], count: usize) -> Order {
+        let mut order = Order::default();
+        order.rank(elements, count, 1, |_| 0);
+        order
+    }
+
+    /// Ranks particles anew; they stay where they are.
+    pub fn find(&mut self, particles: &Particles, elements: usize, fields: &Fields) {
+        let field = |p: usize| fields.of(particles.body[p]);
+        self.rank(&particles.element, elements, fields.count(), field);
+    }
+
+    fn rank(
+        &mut self,
+        element: &[u32],
+        count: usize,
+        fields: usize,
+        field: impl Fn(usize) -> usize,
+    ) {
+        let keys = count * fields;
+        let key = |p: usize| element[p] as usize * fields + field(p);
+        self.fields = fields;
+        self.first.clear();
+        self.first.resize(keys + 1, 0);
+        for p in 0..element.len() {
+            self.first[key(p) + 1] += 1;
         }
         for k in 0..keys {
-            self.offsets[k + 1] += self.offsets[k];
+            self.first[k + 1] += self.first[k];
         }
-        self.destination.resize(particles.len(), 0);
-        for (p, (&e, &body)) in by_place().enumerate() {
-            let next = &mut self.offsets[key(e, body)];
-            self.destination[p] = *next;
+        for numbers in [&mut self.places, &mut self.source, &mut self.destination] {
+            numbers.resize(element.len(), 0);
+        }
+        for p in 0..element.len() {
+            let next = &mut self.first[key(p)];
+            self.places[*next as usize] = p as u32;
             *next += 1;
         }
-        // Each offset has moved on to the next key's; the last one of an element is now where the
-        // next element begins.
-        if fields.count() == 1 {
-            self.offsets.copy_within(0..elements, 1);
-        } else {
-            for e in 0..elements {
-                self.offsets[e + 1] = self.offsets[(e + 1) * fields.count() - 1];
-            }
+        // Each has moved on to the next key's; move them back.
+        self.first.copy_within(0..keys, 1);
+        self.first[0] = 0;
+    }
+
+    /// Ranks of the particles of an element.
+    pub fn ranks(&self, e: usize) -> Range<usize> {
+        self.first[e * self.fields] as usize..self.first[(e + 1) * self.fields] as usize
+    }
+
+    /// Fields that have particles in an element, and the ranks of each.
+    pub fn runs(&self, e: usize) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let first = &self.first[e * self.fields..=(e + 1) * self.fields];
+        let runs = first.windows(2).enumerate().filter(|(_, w)| w[0] < w[1]);
+        runs.map(|(field, w)| (field, w[0] as usize..w[1] as usize))
+    }
+
+    /// Places of the particles in an element.
+    pub fn inside(&self, e: usize) -> &[u32] {
+        &self.places[self.ranks(e)]
+    }
+
+    /// Places of the particles of these ranks.
+    pub fn places(&self, ranks: Range<usize>) -> &[u32] {
+        &self.places[ranks]
+    }
+
+    /// Number of particles.
+    pub fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The particle of this rank is to have this place.
+    pub(crate) fn put(&mut self, rank: u32, place: u32) {
+        let p = std::mem::replace(&mut self.places[rank as usize], place);
+        self.source[place as usize] = p;
+        self.destination[p as usize] = place;
+    }
+
+    /// Moves all particles to the places that they have been given.
+    pub(crate) fn settle(&mut self, particles: &mut Particles) {
+        let from = &self.source;
+        for column in particles.columns_mut() {
+            permute(from, column, &mut self.numbers);
         }
-        self.offsets.truncate(elements + 1);
-        self.offsets[0] = 0;
-        let to = &self.destination;
-        permute(to, &mut particles.id, &mut self.indices);
-        permute(to, &mut particles.element, &mut self.indices);
-        permute(to, &mut particles.body, &mut self.bodies);
-        permute(to, &mut particles.position, &mut self.vectors);
-        permute(to, &mut particles.velocity, &mut self.vectors);
-        permute(to, &mut particles.displacement, &mut self.vectors);
-        permute(to, &mut particles.stress, &mut self.stresses);
-        permute(to, &mut particles.state, &mut self.states);
-        permute(to, &mut particles.volume, &mut self.numbers);
-        permute(to, &mut particles.initial_volume, &mut self.numbers);
-        permute(to, &mut particles.mass, &mut self.numbers);
+        permute(from, &mut particles.id, &mut self.indices);
+        permute(from, &mut particles.element, &mut self.indices);
+        permute(from, &mut particles.body, &mut self.bodies);
     }
 }
 
-fn permute<T: Copy + Default>(destination: &[u32], values: &mut Vec<T>, spare: &mut Vec<T>) {
+/// Particles that one thread moves at a time.
+const BLOCK: usize = 4096;
+
+fn permute<T: Copy + Default + Send + Sync>(
+    source: &[u32],
+    values: &mut Vec<T>,
+    spare: &mut Vec<T>,
+) {
     spare.resize(values.len(), T::default());
-    for (&to, &value) in destination.iter().zip(values.iter()) {
-        spare[to as usize] = value;
-    }
+    fold((source, &mut spare[..]), BLOCK, &|(source, spare): (
+        &[u32],
+        &mut [T],
+    )| {
+        for (new, &from) in spare.iter_mut().zip(source) {
+            *new = values[from as usize];
+        }
+    });
     std::mem::swap(values, spare);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn particles_are_found_by_element_and_field() {
+        let (element, field) = ([2, 0, 2, 2, 0, 3], [1, 0, 0, 1, 0, 1]);
+        let mut order = Order::default();
+        order.rank(&element, 5, 2, |p| field[p]);
+        assert_eq!(order.inside(0), [1, 4]);
+        assert_eq!(order.inside(2), [2, 0, 3]);
+        assert!(order.inside(1).is_empty() && order.inside(4).is_empty());
+        assert_eq!(order.runs(2).collect::<Vec<_>>(), [(0, 2..3), (1, 3..5)]);
+        assert_eq!(order.runs(3).collect::<Vec<_>>(), [(1, 5..6)]);
+    }
 }

@@ -156,7 +156,7 @@ pub fn particles(
         particles.element.push(seed.element);
         particles.position.push(position);
         particles.velocity.push(Vec3::ZERO);
-        particles.displacement.push(Vec3::ZERO);
+        particles.origin.push(position);
         particles.stress.push([0.0; 6]);
         particles.state.push(Default::default());
         particles.volume.push(volume);
@@ -220,10 +220,8 @@ pub fn check_overlap(
     for same in particles.element.chunk_by(|a, b| a == b) {
         let range = end..end + same.len();
         end = range.end;
-        let (body, position) = (
-            &particles.body[range.clone()],
-            &particles.position[range.clone()],
-        );
+        let body = &particles.body[range.clone()];
+        let position: Vec<Vec3> = range.clone().map(|p| particles.position.at(p)).collect();
         let Some(other) = body.iter().find(|&&b| b != body[0]) else {
             continue;
         };

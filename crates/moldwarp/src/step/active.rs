@@ -2,13 +2,15 @@
 //!
 //! A *cell* is an element that holds particles, or an empty one whose four nodes all belong to
 //! such elements (it may count as filled); an element with particles of several velocity fields is
-//! a cell for each. Cells and their nodes are numbered compactly, in the
-//! mesh's order, so that the step never looks at the rest. Nodes are grid nodes: a mesh node that is
+//! a cell for each. Cells and their nodes are numbered compactly, nodes in the
+//! mesh's order and cells nearly (`lanes.rs`), so that the step never looks at the rest. Nodes are grid nodes: a mesh node that is
 //! split by a wall has one on each side (`mesh/walls.rs`), and each of these one for every field that
 //! it moves with (`contact`).
 
 use crate::contact::Fields;
+use crate::lanes::{LANES, Pile, Tiles};
 use crate::mesh::{Mesh, NONE, Walls};
+use crate::particles::Order;
 use std::ops::Range;
 
 /// What cells and nodes are made of.
@@ -18,74 +20,103 @@ pub struct Grid<'a> {
     pub fields: &'a Fields,
 }
 
-impl Grid<'_> {
-    /// Field and first of each run of particles of one field among those of an element.
-    fn runs(
-        &self,
-        mut inside: Range<usize>,
-        bodies: &[u16],
-    ) -> impl Iterator<Item = (usize, usize)> {
-        std::iter::from_fn(move || {
-            let start = inside.next()?;
-            let field = self.fields.of(bodies[start]);
-            if self.fields.count() == 1 {
-                inside.start = inside.end;
-            }
-            while !inside.is_empty() && self.fields.of(bodies[inside.start]) == field {
-                inside.start += 1;
-            }
-            Some((field, start))
-        })
-    }
-}
-
-/// Compact numbering of cells and nodes.
+/// Cells and nodes, numbered compactly.
 #[derive(Clone, Debug, Default)]
 pub struct Active {
-    /// Element of each cell, ascending.
+    /// How cells and their particles lie side by side.
+    pub tiles: Tiles,
+    /// Element of each lane of the tiles, or [`NONE`]. A lane that helps another has that one's element.
     pub elements: Vec<u32>,
-    /// First particle of each cell, and one past the last.
-    pub offsets: Vec<u32>,
-    /// The four nodes of each cell, as compact numbers.
+    /// The four nodes of each lane's cell, as compact numbers; 0 where there is none.
     pub cell_nodes: Vec<[u32; 4]>,
+    /// Whether a lane is a cell: it is neither empty nor a helper.
+    pub is_cell: Vec<bool>,
+    /// Field of each lane's cell.
+    pub fields: Vec<u8>,
+    /// Rank of the first particle of each cell (`particles/order.rs`), and their number.
+    ranks: Vec<(u32, u32)>,
     /// Mesh node of each node.
     pub nodes: Vec<u32>,
     /// Field times number of grid nodes plus grid node of each node, ascending.
     pub keys: Vec<u32>,
     /// Compact number of each key, or [`NONE`].
     pub slot_of_key: Vec<u32>,
-    /// Field of each cell.
-    pub fields: Vec<u8>,
-    /// First cell of each element, or [`NONE`]; those of its other fields follow.
-    pub cell_of_element: Vec<u32>,
     /// Number of grid nodes of the mesh.
     pub grid_nodes: usize,
+    /// Cell of each element and field, or [`NONE`].
+    cell_of: Vec<u32>,
+    field_count: usize,
     node_offsets: Vec<u32>,
-    node_cells: Vec<(u32, u8)>,
+    node_cells: Vec<Corner>,
+    listed: Vec<Listed>,
+}
+
+/// A cell as it is found, before it has a number.
+#[derive(Clone, Copy, Debug)]
+struct Listed {
+    element: u32,
+    first: u32,
+    count: u32,
+    field: u8,
+}
+
+/// A corner of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Corner(u32);
+
+impl Corner {
+    fn new(cell: usize, local: usize) -> Corner {
+        Corner((cell << 2 | local) as u32)
+    }
+
+    /// Number of the cell.
+    #[inline(always)]
+    pub fn cell(self) -> usize {
+        (self.0 >> 2) as usize
+    }
+
+    /// Local number of the node in it.
+    #[inline(always)]
+    pub fn local(self) -> usize {
+        (self.0 & 3) as usize
+    }
 }
 
 impl Active {
-    /// Cells attached to node `slot`, each with the node's local number in it.
+    /// Corners of cells at node `slot`.
     #[inline]
-    pub fn attached(&self, slot: usize) -> &[(u32, u8)] {
+    pub fn attached(&self, slot: usize) -> &[Corner] {
         &self.node_cells[self.node_offsets[slot] as usize..self.node_offsets[slot + 1] as usize]
+    }
+
+    /// The nodes of a tile's cells.
+    #[inline(always)]
+    pub fn tile_nodes(&self, tile: usize) -> &[[u32; 4]; LANES] {
+        &self.cell_nodes.as_chunks().0[tile]
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.listed.len()
+    }
+
+    /// Ranks of the particles of a cell.
+    pub fn ranks(&self, c: usize) -> Range<usize> {
+        let (first, count) = self.ranks[c];
+        first as usize..(first + count) as usize
     }
 
     /// The cell of an element and a field, if there is one.
     #[inline]
     pub fn cell(&self, e: usize, field: usize) -> Option<usize> {
-        let first = self.cell_of_element[e] as usize;
-        let own = |&c: &usize| self.elements[c] as usize == e;
-        (first..self.elements.len())
-            .take_while(own)
-            .find(|&c| usize::from(self.fields[c]) == field)
+        let cell = self.cell_of[e * self.field_count + field];
+        (cell != NONE).then_some(cell as usize)
     }
 
     /// Whether an element holds particles, but none of this field.
     pub fn is_foreign(&self, e: usize, field: usize) -> bool {
-        let first = self.cell_of_element[e] as usize;
-        let occupied = first < self.elements.len() && self.offsets[first] < self.offsets[first + 1];
-        occupied && self.cell(e, field).is_none()
+        let mut cells = (0..self.field_count).filter_map(|f| self.cell(e, f));
+        self.cell(e, field).is_none() && cells.any(|c| self.ranks[c].1 > 0)
     }
 
     /// Field of a node.
@@ -93,68 +124,107 @@ impl Active {
         self.keys[slot] as usize / self.grid_nodes
     }
 
-    /// Whether there is no wall between two neighbours.
+    /// Whether two cells have three nodes in common: a wall may lie between.
     pub fn share_a_face(&self, c: usize, other: usize) -> bool {
-        let other = self.cell_nodes[other];
-        let shared = self.cell_nodes[c].iter().filter(|n| other.contains(n));
-        shared.count() == 3
+        let of_other = &self.cell_nodes[other];
+        let common = |n: &&u32| of_other.contains(n);
+        self.cell_nodes[c].iter().filter(common).count() == 3
     }
 
-    /// Numbers cells and nodes anew from the first particle of each element.
-    pub fn rebuild(&mut self, grid: &Grid, particle_offsets: &[u32], bodies: &[u16]) {
+    /// Finds cells and nodes anew, and gives particles their places.
+    pub fn rebuild(&mut self, grid: &Grid, order: &mut Order) {
         let tets = grid.walls.tets(grid.mesh);
         let nodes = grid.walls.count(grid.mesh);
         let fields = grid.fields.count();
         let key = |field: usize, n: u32| field * nodes + n as usize;
-        self.grid_nodes = nodes;
+        (self.grid_nodes, self.field_count) = (nodes, fields);
         self.slot_of_key.clear();
         self.slot_of_key.resize(fields * nodes, NONE);
         let touched = 0;
-        let inside = |e: usize| particle_offsets[e] as usize..particle_offsets[e + 1] as usize;
         for (e, tet) in tets.iter().enumerate() {
-            for (field, _) in grid.runs(inside(e), bodies) {
+            for (field, _) in order.runs(e) {
                 for &n in tet {
                     self.slot_of_key[key(field, n)] = touched;
                 }
             }
         }
-        self.elements.clear();
-        self.offsets.clear();
-        self.fields.clear();
-        self.cell_of_element.clear();
+        self.listed.clear();
         for (e, tet) in tets.iter().enumerate() {
-            let first = self.elements.len();
-            let occupied = inside(e);
-            for (field, start) in grid.runs(occupied.clone(), bodies) {
-                self.push(e, field, start);
+            let mut empty = true;
+            for (field, ranks) in order.runs(e) {
+                empty = false;
+                self.list(e, field, ranks);
             }
-            for field in (0..fields).filter(|_| occupied.is_empty()) {
+            if !empty {
+                continue;
+            }
+            for field in 0..fields {
                 let all = |n: &u32| self.slot_of_key[key(field, *n)] != NONE;
                 if tet.iter().all(all) {
-                    self.push(e, field, occupied.start);
+                    self.list(e, field, 0..0);
                 }
             }
-            let any = self.elements.len() > first;
-            self.cell_of_element
-                .push(if any { first as u32 } else { NONE });
         }
-        self.offsets.push(particle_offsets[tets.len()]);
-        self.number(grid, nodes);
-        self.cell_nodes.clear();
-        for (&e, &field) in self.elements.iter().zip(&self.fields) {
-            let slot = |n: u32| self.slot_of_key[key(usize::from(field), n)];
-            self.cell_nodes.push(tets[e as usize].map(slot));
-        }
+        self.number_nodes(grid, nodes);
+        self.number_cells(tets, order);
         self.attach();
     }
 
-    fn push(&mut self, e: usize, field: usize, start: usize) {
-        self.elements.push(e as u32);
-        self.offsets.push(start as u32);
-        self.fields.push(field as u8);
+    fn list(&mut self, e: usize, field: usize, ranks: Range<usize>) {
+        self.listed.push(Listed {
+            element: e as u32,
+            first: ranks.start as u32,
+            count: ranks.len() as u32,
+            field: field as u8,
+        });
     }
 
-    fn number(&mut self, grid: &Grid, nodes: usize) {
+    fn number_cells(&mut self, tets: &[[u32; 4]], order: &mut Order) {
+        let Active {
+            tiles,
+            elements,
+            cell_nodes,
+            is_cell,
+            fields,
+            ranks,
+            slot_of_key,
+            grid_nodes,
+            cell_of,
+            field_count,
+            listed,
+            ..
+        } = self;
+        elements.clear();
+        cell_nodes.clear();
+        is_cell.clear();
+        fields.clear();
+        ranks.clear();
+        cell_of.clear();
+        cell_of.resize(tets.len() * *field_count, NONE);
+        let lane = |pile: Option<Pile>| {
+            is_cell.push(pile.is_some_and(|pile| !pile.more));
+            let Some(pile) = pile else {
+                elements.push(NONE);
+                cell_nodes.push([0; 4]);
+                fields.push(0);
+                ranks.push((0, 0));
+                return;
+            };
+            let cell = listed[pile.cell as usize];
+            let (e, field) = (cell.element as usize, usize::from(cell.field));
+            if !pile.more {
+                cell_of[e * *field_count + field] = elements.len() as u32;
+            }
+            elements.push(cell.element);
+            cell_nodes.push(tets[e].map(|n| slot_of_key[field * *grid_nodes + n as usize]));
+            fields.push(cell.field);
+            ranks.push((cell.first, cell.count));
+        };
+        let cells = listed.iter().map(|cell| (cell.first, cell.count));
+        tiles.rebuild(cells, lane, |rank, place| order.put(rank, place));
+    }
+
+    fn number_nodes(&mut self, grid: &Grid, nodes: usize) {
         self.nodes.clear();
         self.keys.clear();
         for (key, slot) in self.slot_of_key.iter_mut().enumerate() {
@@ -169,26 +239,43 @@ impl Active {
 
     fn attach(&mut self) {
         let nodes = self.nodes.len();
-        self.node_offsets.clear();
-        self.node_offsets.resize(nodes + 1, 0);
-        for &n in self.cell_nodes.iter().flatten() {
-            self.node_offsets[n as usize + 1] += 1;
+        let Active {
+            node_offsets: offsets,
+            node_cells,
+            cell_nodes,
+            cell_of,
+            field_count,
+            listed,
+            ..
+        } = self;
+        // In the mesh's order, so that sums do not depend on how cells share tiles.
+        let cells = || {
+            listed.iter().map(|cell| {
+                let e = cell.element as usize;
+                let c = cell_of[e * *field_count + usize::from(cell.field)] as usize;
+                (c, &cell_nodes[c])
+            })
+        };
+        offsets.clear();
+        offsets.resize(nodes + 1, 0);
+        for &n in cells().flat_map(|cell| cell.1) {
+            offsets[n as usize + 1] += 1;
         }
         for n in 0..nodes {
-            self.node_offsets[n + 1] += self.node_offsets[n];
+            offsets[n + 1] += offsets[n];
         }
-        self.node_cells.clear();
-        self.node_cells.resize(4 * self.cell_nodes.len(), (0, 0));
-        for (c, cell) in self.cell_nodes.iter().enumerate() {
+        node_cells.clear();
+        node_cells.resize(offsets[nodes] as usize, Corner::default());
+        for (c, cell) in cells() {
             for (local, &n) in cell.iter().enumerate() {
-                let next = &mut self.node_offsets[n as usize];
-                self.node_cells[*next as usize] = (c as u32, local as u8);
+                let next = &mut offsets[n as usize];
+                node_cells[*next as usize] = Corner::new(c, local);
                 *next += 1;
             }
         }
         // Each offset has moved on to the next node's; move them back.
-        self.node_offsets.copy_within(0..nodes, 1);
-        self.node_offsets[0] = 0;
+        offsets.copy_within(0..nodes, 1);
+        offsets[0] = 0;
     }
 }
 
@@ -202,10 +289,8 @@ mod tests {
     fn empty_elements_between_occupied_ones_are_cells_too() {
         let mesh = box_mesh(Vec3::ONE, [3, 3, 3]).unwrap();
         let hole = mesh.walk(0, Vec3::new(0.52, 0.51, 0.5)).unwrap() as usize;
-        let mut offsets = vec![0u32; mesh.tets.len() + 1];
-        for e in 0..mesh.tets.len() {
-            offsets[e + 1] = offsets[e] + u32::from(e != hole);
-        }
+        let others = (0..mesh.tets.len() as u32).filter(|&e| e as usize != hole);
+        let mut order = Order::of(&others.collect::<Vec<_>>(), mesh.tets.len());
         let mut active = Active::default();
         let (walls, fields) = (Walls::default(), Fields::default());
         let grid = Grid {
@@ -213,18 +298,18 @@ mod tests {
             walls: &walls,
             fields: &fields,
         };
-        let bodies = vec![0; mesh.tets.len()];
-        active.rebuild(&grid, &offsets, &bodies);
-        assert_eq!(active.elements.len(), mesh.tets.len());
-        assert_eq!(active.offsets[hole], active.offsets[hole + 1]);
+        active.rebuild(&grid, &mut order);
+        assert_eq!(active.cell_count(), mesh.tets.len());
+        let hole = active.cell(hole, 0).unwrap();
+        assert!(active.ranks(hole).is_empty());
         for slot in 0..active.nodes.len() {
-            for &(c, local) in active.attached(slot) {
-                assert_eq!(active.cell_nodes[c as usize][local as usize] as usize, slot);
+            for corner in active.attached(slot) {
+                let own = active.cell_nodes[corner.cell()][corner.local()];
+                assert_eq!(own as usize, slot);
             }
         }
         // With particles in one corner only, the rest sleeps.
-        let offsets: Vec<u32> = (0..=mesh.tets.len()).map(|e| u32::from(e > 0)).collect();
-        active.rebuild(&grid, &offsets, &bodies);
-        assert_eq!((active.elements.len(), active.nodes.len()), (1, 4));
+        active.rebuild(&grid, &mut Order::of(&[0], mesh.tets.len()));
+        assert_eq!((active.cell_count(), active.nodes.len()), (1, 4));
     }
 }

@@ -3,14 +3,17 @@
 
 use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, interpolate, load_nodes};
 use super::state::moved;
-use super::{BLOCK, guard};
+use super::{TILES, guard};
 use crate::Vec3;
 use crate::contact::{Contacts, Fields};
-use crate::lanes::{self, LANES, Lane, Window, either, for_each_simd, get, set, whole};
+use crate::lanes::{
+    self, ByTile, LANES, Lane, either, for_each_simd, get, load, load_one, set, store, whole,
+};
 use crate::measure::Part;
 use crate::mesh::Mesh;
-use crate::parallel::{ByCell, First, Sum, fold};
+use crate::parallel::{First, Sum, fold};
 use crate::simulation::{Simulation, Stop};
+use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     let stays = !(sim.driven.moves() || sim.follower.moves());
@@ -18,6 +21,7 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     sim.profile.lap(Part::Move);
     if !stays {
         move_mesh(sim)?;
+        sim.cells.find_shapes(&sim.active, &sim.plan.mesh);
         sim.profile.lap(Part::Mesh);
         crossing = locate(sim);
         sim.profile.lap(Part::Locate);
@@ -65,10 +69,8 @@ fn move_mesh(sim: &mut Simulation) -> Result<(), Stop> {
 
 /// Cells and particles side by side.
 struct Side {
-    shapes: Shapes,
     moved: Corners,
     position: [Lane; 3],
-    displacement: [Lane; 3],
     mass: Lane,
     work: Lane,
     /// 1 where a particle has left its element as it was.
@@ -79,10 +81,8 @@ impl Default for Side {
     fn default() -> Side {
         let vector = [[0.0; LANES]; 3];
         Side {
-            shapes: Shapes::default(),
             moved: NO_CORNERS,
             position: vector,
-            displacement: vector,
             mass: [0.0; LANES],
             work: [0.0; LANES],
             left: [0.0; LANES],
@@ -96,17 +96,27 @@ fn is_inside(n: [f64; 4]) -> bool {
 }
 
 for_each_simd! {
-    fn go_along(side: &mut Side, gravity: Vec3, lanes: usize) {
+    fn go_along(
+        side: &mut Side,
+        shapes: &Shapes,
+        gravity: Vec3,
+        mass: &[f64],
+        position: &mut [&mut [f64]; 3],
+        start: usize,
+        lanes: usize,
+    ) {
+        load(&mut side.position, &position.each_ref().map(|x| &**x), start);
+        load_one(&mut side.mass, mass, start);
+        side.mass[lanes..whole(lanes)].fill(0.0);
         for l in 0..whole(lanes) {
             let mut x = Vec3::from_array(get(&side.position, l));
-            let step = interpolate(side.shapes.at(l, x), all_corners(&side.moved, l));
+            let step = interpolate(shapes.at(l, x), all_corners(&side.moved, l));
             x += step;
             set(&mut side.position, l, x.to_array());
-            let displacement = Vec3::from_array(get(&side.displacement, l)) + step;
-            set(&mut side.displacement, l, displacement.to_array());
             side.work[l] += side.mass[l] * gravity.dot(step);
-            side.left[l] = either(is_inside(side.shapes.at(l, x)), 0.0, 1.0);
+            side.left[l] = either(is_inside(shapes.at(l, x)), 0.0, 1.0);
         }
+        store(&side.position, position, start, lanes);
     }
 }
 
@@ -166,7 +176,8 @@ fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
         plan,
         particles,
         active,
-        nodes,
+        shared,
+        cells,
         ledger,
         gravity,
         fields,
@@ -174,51 +185,45 @@ fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
         simd,
         ..
     } = sim;
-    let (mesh, active, nodes, gravity) = (&plan.mesh, &*active, &nodes[..], *gravity);
-    let (mass, simd) = (&particles.mass, *simd);
+    let (mesh, active, shared, gravity) = (&plan.mesh, &*active, &*shared, *gravity);
+    let simd = *simd;
     let search = Search {
         mesh,
         fields,
         contacts,
         body: &particles.body,
     };
+    type Arrays<'a> = ([&'a mut [f64]; 3], &'a mut [u32], &'a [f64]);
     let arrays = (
-        &mut particles.position[..],
-        &mut particles.displacement[..],
+        particles.position.components_mut(),
         &mut particles.element[..],
+        &particles.mass[..],
     );
-    let block = ByCell::new(&active.offsets, arrays);
-    type Arrays<'a> = (&'a mut [Vec3], &'a mut [Vec3], &'a mut [u32]);
-    let (lifted, crossing) = fold(block, BLOCK, &|block: ByCell<Arrays>| {
+    let all = ByTile::new(&active.tiles, arrays, &cells.shapes[..]);
+    let (lifted, crossing) = fold(all, TILES, &|block: ByTile<Arrays, &[Shapes]>| {
         let first = block.first();
-        let (positions, displacements, elements) = block.particles;
+        let tiles = block.each().zip(block.cells);
+        let (mut position, elements, mass) = block.particles;
         let mut side = Side::default();
         let mut crossing = Crossing::default();
-        for window in Window::of(block.cells, &active.offsets) {
-            for (l, &c) in window.cells().iter().enumerate() {
-                let c = c as usize;
-                side.shapes.load(l, mesh, active.elements[c] as usize);
-                load_nodes(&mut side.moved, l, active, c, nodes, |n| n.moved);
+        for ((number, tile), shapes) in tiles {
+            load_nodes(&mut side.moved, active.tile_nodes(number), &shared.moved);
+            for slot in tile.slots() {
+                let start = slot.start - first;
+                go_along(
+                    simd,
+                    &mut side,
+                    shapes,
+                    gravity,
+                    mass,
+                    &mut position,
+                    start,
+                    slot.len(),
+                );
+                if stays {
+                    side.search(&search, slot, &mut elements[start..], &mut crossing);
+                }
             }
-            window.slots(|slot| {
-                for (l, &p) in slot.iter().enumerate() {
-                    let own = p as usize - first;
-                    set(&mut side.position, l, positions[own].to_array());
-                    set(&mut side.displacement, l, displacements[own].to_array());
-                    side.mass[l] = mass[p as usize];
-                }
-                side.mass[slot.len()..whole(slot.len())].fill(0.0);
-                go_along(simd, &mut side, gravity, slot.len());
-                for (l, &p) in slot.iter().enumerate() {
-                    let own = p as usize - first;
-                    positions[own] = Vec3::from_array(get(&side.position, l));
-                    displacements[own] = Vec3::from_array(get(&side.displacement, l));
-                    if stays && side.left[l] != 0.0 {
-                        let x = positions[own];
-                        search.walk(p as usize, x, &mut elements[own], &mut crossing);
-                    }
-                }
-            });
         }
         (lanes::sum(&side.work), crossing)
     });
@@ -226,11 +231,32 @@ fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
     crossing
 }
 
+impl Side {
+    /// Finds the elements of the particles of a slot that have left theirs.
+    fn search(
+        &self,
+        search: &Search,
+        slot: Range<usize>,
+        elements: &mut [u32],
+        crossing: &mut Crossing,
+    ) {
+        let left = &self.left[..slot.len()];
+        if left.iter().sum::<f64>() == 0.0 {
+            return;
+        }
+        for (l, p) in slot.enumerate().filter(|&(l, _)| left[l] != 0.0) {
+            let x = Vec3::from_array(get(&self.position, l));
+            search.walk(p, x, &mut elements[l], crossing);
+        }
+    }
+}
+
 for_each_simd! {
-    fn look(side: &mut Side, lanes: usize) {
+    fn look(side: &mut Side, shapes: &Shapes, position: &[&[f64]; 3], start: usize, lanes: usize) {
+        load(&mut side.position, position, start);
         for l in 0..whole(lanes) {
             let x = Vec3::from_array(get(&side.position, l));
-            side.left[l] = either(is_inside(side.shapes.at(l, x)), 0.0, 1.0);
+            side.left[l] = either(is_inside(shapes.at(l, x)), 0.0, 1.0);
         }
     }
 }
@@ -241,6 +267,7 @@ fn locate(sim: &mut Simulation) -> Crossing {
         plan,
         particles,
         active,
+        cells,
         fields,
         contacts,
         simd,
@@ -252,30 +279,21 @@ fn locate(sim: &mut Simulation) -> Crossing {
         contacts,
         body: &particles.body,
     };
-    let (active, position, simd) = (&*active, &particles.position, *simd);
-    let block = ByCell::new(&active.offsets, &mut particles.element[..]);
-    fold(block, BLOCK, &|block: ByCell<&mut [u32]>| {
+    let (active, position, simd) = (&*active, particles.position.components(), *simd);
+    let elements = &mut particles.element[..];
+    let all = ByTile::new(&active.tiles, elements, &cells.shapes[..]);
+    fold(all, TILES, &|block: ByTile<&mut [u32], &[Shapes]>| {
         let first = block.first();
+        let tiles = block.each().zip(block.cells);
         let elements = block.particles;
         let mut side = Side::default();
         let mut crossing = Crossing::default();
-        for window in Window::of(block.cells, &active.offsets) {
-            for (l, &c) in window.cells().iter().enumerate() {
-                let e = active.elements[c as usize] as usize;
-                side.shapes.load(l, search.mesh, e);
+        for ((_, tile), shapes) in tiles {
+            for slot in tile.slots() {
+                look(simd, &mut side, shapes, &position, slot.start, slot.len());
+                let own = &mut elements[slot.start - first..];
+                side.search(&search, slot, own, &mut crossing);
             }
-            window.slots(|slot| {
-                for (l, &p) in slot.iter().enumerate() {
-                    set(&mut side.position, l, position[p as usize].to_array());
-                }
-                look(simd, &mut side, slot.len());
-                for (l, &p) in slot.iter().enumerate() {
-                    if side.left[l] != 0.0 {
-                        let (p, element) = (p as usize, &mut elements[p as usize - first]);
-                        search.walk(p, position[p], element, &mut crossing);
-                    }
-                }
-            });
         }
         crossing
     })

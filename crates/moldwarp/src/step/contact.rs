@@ -1,6 +1,7 @@
 //! Contact between bodies: after the equation of motion, and again after the remap (Jassim et al.
 //! Eq. 10–14; the impulses are in `contact/meeting.rs`).
 
+use super::active::Corner;
 use super::nodes::signs;
 use super::to_nodes::is_filled;
 use super::{Active, Node};
@@ -317,11 +318,10 @@ fn face_normals(
 /// their surface with its normal out of them: it points outwards, and its length is the part of the
 /// surface that belongs to the node, m².
 fn volume_gradient(sim: &Simulation, slot: usize) -> Vec3 {
-    let (active, mesh, sums) = (&sim.active, &sim.plan.mesh, &sim.cells.sums);
-    let gradient = |&(c, local): &(u32, u8)| {
-        let c = c as usize;
-        let own = mesh.all_gradients(active.elements[c] as usize)[local as usize];
-        own * sums[c].volume
+    let (active, mesh) = (&sim.active, &sim.plan.mesh);
+    let gradient = |at: &Corner| {
+        let e = active.elements[at.cell()] as usize;
+        mesh.all_gradients(e)[at.local()] * sim.cells.volume(at.cell())
     };
     active.attached(slot).iter().map(gradient).sum()
 }
@@ -330,11 +330,11 @@ fn volume_gradient(sim: &Simulation, slot: usize) -> Vec3 {
 /// element and leave it one by one, and the faces under the middle of a body are covered all the same.
 fn fill(sim: &Simulation, c: usize) -> f64 {
     let (active, mesh) = (&sim.active, &sim.plan.mesh);
-    if is_filled(&active.cell_nodes[c], &sim.nodes) {
+    if is_filled(&active.cell_nodes[c], &sim.shared.filling) {
         return 1.0;
     }
     let whole = mesh.volumes[active.elements[c] as usize];
-    (sim.cells.sums[c].volume / whole).min(1.0)
+    (sim.cells.volume(c) / whole).min(1.0)
 }
 
 /// The greatest gap at which bodies touch, m.
@@ -342,7 +342,7 @@ fn touching_gap(sim: &Simulation, meeting: &Meeting) -> f64 {
     let cells = meeting.slots.map(|s| sim.active.attached(s as usize));
     let elements = cells.into_iter().flatten();
     let altitudes = elements.map(|a| {
-        let e = sim.active.elements[a.0 as usize];
+        let e = sim.active.elements[a.cell()];
         sim.plan.mesh.altitudes[e as usize]
     });
     TOUCHING * altitudes.fold(f64::INFINITY, f64::min)
@@ -356,11 +356,12 @@ fn balls<'a>(
 ) -> impl Iterator<Item = Ball> + use<'a> {
     let (active, particles) = (&sim.active, &sim.particles);
     let origin = sim.plan.mesh.nodes[active.nodes[slot] as usize];
-    let cells = active.attached(slot).iter().map(|a| a.0 as usize);
-    let inside = cells.flat_map(|c| active.offsets[c] as usize..active.offsets[c + 1] as usize);
-    inside.map(move |p| {
+    let cells = active.attached(slot).iter().map(|at| at.cell());
+    let inside = cells.flat_map(|c| sim.order.places(active.ranks(c)));
+    inside.map(move |&p| {
+        let p = p as usize;
         let depth = contacts.depth[particles.id[p] as usize];
-        (particles.position[p] - origin, depth)
+        (particles.position.at(p) - origin, depth)
     })
 }
 

@@ -20,9 +20,9 @@
 //! (Averaging lumped and consistent mass for phase accuracy: Goudreau and Taylor 1973.)
 
 use super::shapes::{Corners, NO_CORNERS, all_corners, load_nodes, set_corner};
-use super::{Active, BLOCK, Node};
+use super::{Active, BLOCK, CellPairs, Cells, Node, TILES};
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, for_each_simd, set, side_by_side, whole};
+use crate::lanes::{LANES, for_each_simd};
 use crate::parallel::fold;
 use crate::plan::MassMatrix;
 use crate::simulation::Simulation;
@@ -44,26 +44,27 @@ pub(super) fn stiffening(mass: MassMatrix) -> f64 {
 /// The pairs of a cell's nodes, in the order of [`CellPairs`](super::CellPairs).
 pub(super) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
 
-/// Cells side by side.
-struct Side {
-    w: Corners,
-    pairs: [Lane; 6],
-    sum: Corners,
-}
-
 for_each_simd! {
-    fn flow(side: &mut Side, lanes: usize) {
-        for l in 0..whole(lanes) {
-            let w = all_corners(&side.w, l);
+    /// Σ_j M_ij (w_i − w_j) of each node.
+    fn flow(
+        w: &mut Corners,
+        nodes: &[[u32; 4]; LANES],
+        given: &[Vec3],
+        pairs: &CellPairs,
+        sums: &mut Corners,
+    ) {
+        load_nodes(w, nodes, given);
+        for l in 0..LANES {
+            let w = all_corners(w, l);
             let mut sum = [Vec3::ZERO; 4];
             for k in 0..6 {
                 let (i, j) = PAIRS[k];
-                let flux = (w[i] - w[j]) * side.pairs[k][l];
+                let flux = (w[i] - w[j]) * pairs[k][l];
                 sum[i] += flux;
                 sum[j] -= flux;
             }
             for i in 0..4 {
-                set_corner(&mut side.sum, l, i, sum[i]);
+                set_corner(sums, l, i, sum[i]);
             }
         }
     }
@@ -77,31 +78,24 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
     let Simulation {
         active,
         nodes,
+        shared,
         cells,
         simd,
         ..
     } = sim;
-    let (active, nodes, pairs, simd) = (&*active, &nodes[..], &cells.pairs[..], *simd);
-    let items = (0..active.elements.len(), &mut cells.exchange[..]);
-    fold(items, BLOCK, &|(range, sums): (
+    for (given, node) in shared.given.iter_mut().zip(&*nodes) {
+        *given = w(node);
+    }
+    let (active, given, pairs, simd) = (&*active, &shared.given[..], &cells.pairs[..], *simd);
+    let items = (0..pairs.len(), &mut cells.corners[..]);
+    fold(items, TILES, &|(tiles, corners): (
         Range<usize>,
-        &mut [[Vec3; 4]],
+        &mut [Corners],
     )| {
-        let first = range.start;
-        let mut side = Side {
-            w: NO_CORNERS,
-            pairs: [[0.0; LANES]; 6],
-            sum: NO_CORNERS,
-        };
-        for window in side_by_side(range) {
-            for (l, c) in window.clone().enumerate() {
-                load_nodes(&mut side.w, l, active, c, nodes, &w);
-                set(&mut side.pairs, l, pairs[c]);
-            }
-            flow(simd, &mut side, window.len());
-            for (l, c) in window.enumerate() {
-                sums[c - first] = all_corners(&side.sum, l);
-            }
+        let mut w = NO_CORNERS;
+        for (tile, sums) in tiles.zip(corners) {
+            let nodes = active.tile_nodes(tile);
+            flow(simd, &mut w, nodes, given, &pairs[tile], sums);
         }
     });
     CORRECTION
@@ -109,21 +103,11 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
 
 /// B w − w at node `slot`, after [`exchange`].
 #[inline]
-pub(super) fn change(
-    theta: f64,
-    slot: usize,
-    mass: f64,
-    active: &Active,
-    exchange: &[[Vec3; 4]],
-) -> Vec3 {
+pub(super) fn change(theta: f64, slot: usize, mass: f64, active: &Active, cells: &Cells) -> Vec3 {
     if theta == 0.0 || mass == 0.0 {
         return Vec3::ZERO;
     }
-    let attached = active.attached(slot).iter();
-    let sum: Vec3 = attached
-        .map(|&(c, i)| exchange[c as usize][i as usize])
-        .sum();
-    sum * (theta / mass)
+    cells.at_node(active.attached(slot)) * (theta / mass)
 }
 
 /// What particles receive of the nodes' accelerations in a kick of length `h`.
@@ -132,25 +116,28 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
     let Simulation {
         active,
         nodes,
+        shared,
         cells,
         constraints,
         ledger,
         ..
     } = sim;
-    let (active, exchange, constraints) = (&*active, &cells.exchange[..], &*constraints);
-    let items = (0..nodes.len(), &mut nodes[..]);
-    let gain = fold(items, BLOCK, &|(slots, nodes): (
+    let (active, cells, constraints) = (&*active, &*cells, &*constraints);
+    let items = (0..nodes.len(), &mut nodes[..], &mut shared.given[..]);
+    let gain = fold(items, BLOCK, &|(slots, nodes, given): (
         Range<usize>,
         &mut [Node],
+        &mut [Vec3],
     )| {
         let mut gain = 0.0;
-        for (slot, node) in slots.zip(nodes) {
-            let change = change(theta, slot, node.mass, active, exchange);
+        for ((slot, node), given) in slots.zip(nodes).zip(given) {
+            let change = change(theta, slot, node.mass, active, cells);
             node.received = node.acceleration
                 + match constraints.of(active.nodes[slot]) {
                     Some(constraint) => constraint.free * change,
                     None => change,
                 };
+            *given = node.received;
             gain += h * node.mass * node.velocity.dot(node.received);
         }
         gain

@@ -16,7 +16,7 @@ const TRIES: usize = 4;
 pub(super) fn put_back(sim: &mut Simulation) -> Result<bool, Stop> {
     let mut crossed = false;
     for p in 0..sim.particles.len() {
-        let (before, x) = (sim.particles.element[p], sim.particles.position[p]);
+        let (before, x) = (sim.particles.element[p], sim.particles.position.at(p));
         if sim.plan.mesh.contains(before, x) {
             continue;
         }
@@ -27,8 +27,7 @@ pub(super) fn put_back(sim: &mut Simulation) -> Result<bool, Stop> {
         let moved = at - x;
         crossed |= found != before;
         sim.particles.element[p] = found;
-        sim.particles.position[p] = at;
-        sim.particles.displacement[p] += moved;
+        sim.particles.position.set(p, at);
         let work = sim.particles.mass[p] * sim.gravity.dot(moved);
         sim.ledger.gravity_work(work);
         sim.contacts.projections.add(moved.length(), work);
@@ -40,7 +39,7 @@ pub(super) fn put_back(sim: &mut Simulation) -> Result<bool, Stop> {
 fn settle(sim: &Simulation, p: usize) -> Option<(u32, Vec3)> {
     let (mesh, contacts) = (&sim.plan.mesh, &sim.contacts);
     let field = sim.fields.of(sim.particles.body[p]);
-    let (before, start) = (sim.particles.element[p], sim.particles.position[p]);
+    let (before, start) = (sim.particles.element[p], sim.particles.position.at(p));
     let mut x = start;
     for _ in 0..TRIES {
         let found = mesh.walk(before, x)?;
@@ -120,25 +119,29 @@ mod tests {
             let body = |&p: &usize| sim.particles.body[p] == body;
             (0..sim.particles.len()).filter(body).collect()
         };
-        let height = |sim: &Simulation, p: usize| sim.particles.position[p].z;
+        let put = |sim: &mut Simulation, p: usize, z: f64| {
+            let x = sim.particles.position.at(p);
+            sim.particles.position.set(p, x.with_z(z));
+        };
+        let height = |sim: &Simulation, p: usize| sim.particles.position.at(p).z;
         for (body, sign) in [(1, -1.0), (0, 1.0)] {
             let nearest = |a: &usize, b: &usize| {
                 let distance = |p: usize| (height(&sim, p) - 1.0).abs();
                 distance(*a).total_cmp(&distance(*b))
             };
             let p = own(&sim, body).into_iter().min_by(nearest).unwrap();
-            sim.particles.position[p].z = 1.0 + 0.01 * sign;
+            put(&mut sim, p, 1.0 + 0.01 * sign);
             assert!(put_back(&mut sim).is_ok());
             assert!((height(&sim, p) - 1.0) * sign < 0.0, "back on its side");
             assert!((height(&sim, p) - 1.0).abs() < 1e-8);
             let e = sim.particles.element[p];
-            assert!(sim.plan.mesh.contains(e, sim.particles.position[p]));
+            assert!(sim.plan.mesh.contains(e, sim.particles.position.at(p)));
         }
         let done = sim.contacts.projections;
         assert_eq!(done.count, 2);
         assert!((done.sum - 0.02).abs() < 1e-6);
         let p = own(&sim, 1)[0];
-        sim.particles.position[p].z = 0.8;
+        put(&mut sim, p, 0.8);
         assert!(matches!(put_back(&mut sim), Err(Stop::PassedAFace { .. })));
     }
 }

@@ -24,7 +24,6 @@ mod active;
 mod advance;
 mod contact;
 mod correction;
-mod deformed;
 mod guard;
 mod nodes;
 mod reference;
@@ -43,7 +42,9 @@ mod to_particles;
 pub use active::{Active, Grid};
 pub(crate) use nodes::unheld;
 pub(crate) use reference::Reference;
-pub use state::{CellForce, CellPairs, CellStrain, CellStress, CellSums, Node};
+pub(crate) use state::{
+    CellForce, CellPairs, CellStrain, CellStress, CellSums, Cells, Node, Shared,
+};
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
 
@@ -52,6 +53,8 @@ use crate::simulation::{Simulation, Stop};
 
 /// Cells or nodes that one thread works on at a time.
 const BLOCK: usize = 256;
+/// Tiles of cells that one thread works on at a time.
+const TILES: usize = 8;
 
 impl Simulation {
     /// Advances positions, stresses and the mesh by `dt` seconds.
@@ -142,6 +145,13 @@ mod tests {
         Simulation::new(plan).unwrap()
     }
 
+    fn move_nodes(sim: &mut Simulation, motion: impl Fn(Vec3) -> Vec3) {
+        for (node, &n) in sim.nodes.iter_mut().zip(&sim.active.nodes) {
+            node.moved = motion(sim.plan.mesh.nodes[n as usize]);
+        }
+        sim.shared.renew(&sim.nodes);
+    }
+
     /// Mean, von Mises' stress and determinant.
     fn invariants(stress: &[f64; 6]) -> [f64; 3] {
         [
@@ -163,17 +173,19 @@ mod tests {
         let angle = std::f64::consts::TAU / f64::from(steps);
         let turn = Mat3::from_axis_angle(Vec3::new(1.0, 2.0, 2.0) / 3.0, angle);
         for _ in 0..steps {
-            for (node, &n) in sim.nodes.iter_mut().zip(&sim.active.nodes) {
-                let arm = sim.plan.mesh.nodes[n as usize] - centre;
-                node.moved = turn * arm - arm;
-            }
+            move_nodes(&mut sim, |x| turn * (x - centre) - (x - centre));
             strain::run(&mut sim);
             stress::run(&mut sim);
             advance::run(&mut sim).unwrap();
         }
         let expected = invariants(&first);
-        for (stress, u) in sim.particles.stress.iter().zip(&sim.particles.displacement) {
-            for (now, before) in invariants(stress).iter().zip(expected) {
+        for (stress, u) in sim
+            .particles
+            .stress
+            .iter()
+            .zip(sim.particles.displacements())
+        {
+            for (now, before) in invariants(&stress).iter().zip(expected) {
                 assert!((now / before - 1.0).abs() < 1e-10, "{now} {before}");
             }
             // The rotation of a step, (I − W/2)⁻¹ (I + W/2), is exact for the midpoint gradient.
@@ -210,9 +222,7 @@ mod tests {
         let rate = Mat3::from_diagonal(Vec3::new(2e-5, -1e-5, -6e-5));
         let (mut stress, mut state) = ([0.0; 6], crate::material::State::default());
         for _ in 0..200 {
-            for (node, &n) in sim.nodes.iter_mut().zip(&sim.active.nodes) {
-                node.moved = rate * sim.plan.mesh.nodes[n as usize];
-            }
+            move_nodes(&mut sim, |x| rate * x);
             strain::run(&mut sim);
             stress::run(&mut sim);
             let midpoint = rate * (Mat3::IDENTITY + rate * 0.5).inverse();
@@ -221,7 +231,7 @@ mod tests {
             stress = model.update(&stress, &increment, &mut state).stress;
         }
         assert!(state[0] > 1e-3, "the soil yields");
-        for (own, values) in sim.particles.stress.iter().zip(&sim.particles.state) {
+        for (own, values) in sim.particles.stress.iter().zip(sim.particles.state.iter()) {
             assert!(own.iter().zip(stress).all(|(a, b)| (a - b).abs() < 1e-6));
             assert!((values[0] - state[0]).abs() < 1e-12);
         }

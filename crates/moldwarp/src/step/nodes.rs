@@ -1,11 +1,13 @@
 //! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
-use super::{Active, BLOCK, Node, contact, rigid};
+use super::active::Corner;
+use super::{Active, BLOCK, Cells, Node, contact, rigid};
 use crate::boundary::AbsorbingNode;
+use crate::lanes::lane_of;
 use crate::measure::{DriftWork, Forces};
 use crate::parallel::fold;
-use crate::simulation::{Cells, Simulation};
+use crate::simulation::Simulation;
 use crate::{Mat3, Vec3};
 use std::ops::Range;
 
@@ -40,7 +42,6 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 *node = Node {
                     grid_velocity: grid.0,
                     moved: grid.1,
-                    filling: node.filling,
                     ..Node::default()
                 };
                 continue;
@@ -103,13 +104,15 @@ fn book(sim: &mut Simulation, drifted: bool) {
 
 /// −Σ S ∇N_i of a node, N.
 fn internal_force(slot: usize, active: &Active, cells: &Cells) -> Vec3 {
-    let force = |&(c, local): &(u32, u8)| cells.nodal[c as usize][local as usize];
-    active.attached(slot).iter().map(force).sum()
+    cells.at_node(active.attached(slot))
 }
 
 /// The mass whose weight pulls at a node where there is a reference stress, kg.
 fn weighed(slot: usize, active: &Active, cells: &Cells) -> f64 {
-    let own = |&(c, local): &(u32, u8)| cells.forces[c as usize].weighed[local as usize];
+    let own = |at: &Corner| {
+        let (tile, l) = lane_of(at.cell());
+        cells.forces[tile].weighed[at.local()][l]
+    };
     active.attached(slot).iter().map(own).sum()
 }
 
@@ -151,7 +154,7 @@ fn apply_loads(sim: &mut Simulation) {
     for point in loads.iter() {
         let p = point.particle as usize;
         let e = particles.element[p] as usize;
-        let n = mesh.barycentric(e, particles.position[p] + point.offset);
+        let n = mesh.barycentric(e, particles.position.at(p) + point.offset);
         let load = point.load as usize;
         let factor = switches.load(load, clock.time);
         let force = point.force * (factor * plan.loads[load].function.value(clock.time));

@@ -37,14 +37,14 @@ pub(super) struct Scaled<'a> {
 }
 
 impl Reference {
-    /// Adds a particle to its cell's sums.
+    /// Adds a particle to the sums of the cell in a lane.
     #[inline]
-    pub fn add(&self, sum: &mut CellStress, body: usize, x: Vec3, volume: f64) {
+    pub fn add(&self, sum: &mut CellStress, lane: usize, body: usize, x: Vec3, volume: f64) {
         if let Some(k0) = self.k0[body] {
             let vertical = self.ground.vertical(x) * volume;
-            sum.reference[0] += vertical;
-            sum.reference[1] += k0 * vertical;
-            sum.reference[2] += volume;
+            sum.reference[0][lane] += vertical;
+            sum.reference[1][lane] += k0 * vertical;
+            sum.reference[2][lane] += volume;
         }
     }
 

@@ -5,9 +5,11 @@
 //! velocity that they have, as they do in stage 3 with accelerations, so that a roller on a plane of
 //! symmetry is a mirror.
 
+use super::shapes::corner;
 use super::state::moved;
 use super::{BLOCK, Node, contact, correction};
 use crate::Vec3;
+use crate::lanes::lane_of;
 use crate::measure::DriftWork;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
@@ -52,10 +54,11 @@ fn average(sim: &mut Simulation) {
         &mut [Node],
     )| {
         for (slot, node) in slots.zip(nodes) {
-            let attached = active.attached(slot).iter();
-            let momentum: Vec3 = attached
-                .map(|&(c, i)| sums[c as usize].momentum[i as usize])
-                .sum();
+            let mut momentum = Vec3::ZERO;
+            for at in active.attached(slot) {
+                let (tile, l) = lane_of(at.cell());
+                momentum += corner(&sums[tile].momentum, l, at.local());
+            }
             node.average = if node.mass > 0.0 {
                 momentum / node.mass
             } else {
@@ -77,7 +80,7 @@ fn correct(sim: &mut Simulation, theta: f64) {
         constraints,
         ..
     } = sim;
-    let (active, exchange, constraints) = (&*active, &cells.exchange[..], &*constraints);
+    let (active, cells, constraints) = (&*active, &*cells, &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
@@ -85,7 +88,7 @@ fn correct(sim: &mut Simulation, theta: f64) {
     )| {
         for (slot, node) in slots.zip(nodes) {
             node.grid_velocity = node.average;
-            node.grid_velocity += correction::change(theta, slot, node.mass, active, exchange);
+            node.grid_velocity += correction::change(theta, slot, node.mass, active, cells);
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =
                     constraint.free * node.grid_velocity + constraints.prescribed(constraint);
@@ -98,15 +101,21 @@ fn correct(sim: &mut Simulation, theta: f64) {
 fn move_nodes(sim: &mut Simulation, dt: f64) {
     let Simulation {
         nodes,
+        shared,
         ledger,
         gravity,
         ..
     } = sim;
     let gravity = *gravity;
-    let work = fold(&mut nodes[..], BLOCK, &|nodes: &mut [Node]| {
+    let items = (&mut nodes[..], &mut shared.moved[..]);
+    let work = fold(items, BLOCK, &|(nodes, moved): (
+        &mut [Node],
+        &mut [Vec3],
+    )| {
         let mut work = DriftWork::default();
-        for node in nodes {
+        for (node, moved) in nodes.iter_mut().zip(moved) {
             node.moved = node.grid_velocity * dt;
+            *moved = node.moved;
             work.add(node, gravity);
         }
         work

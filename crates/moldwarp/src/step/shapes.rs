@@ -1,21 +1,25 @@
 //! Shape functions and nodal values of cells side by side.
 
-use super::{Active, Node};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, get, set};
-use crate::mesh::{Mesh, barycentric};
+use crate::mesh::{Mesh, NONE, barycentric};
 
 /// Vectors at the four nodes of cells side by side.
-pub(super) type Corners = [Lane; 12];
+pub type Corners = [Lane; 12];
 
 pub(super) const NO_CORNERS: Corners = [[0.0; LANES]; 12];
 
-/// What the shape functions of elements are made of.
-pub(super) struct Shapes {
+/// What the shape functions of elements are made of. All zero where there is no element.
+#[derive(Clone, Debug)]
+pub struct Shapes {
     /// Node 0.
     origin: [Lane; 3],
     /// ∇N₁, ∇N₂, ∇N₃.
     gradients: [Lane; 9],
+    /// Volume, m³.
+    pub volume: Lane,
+    /// Shortest altitude, m.
+    pub altitude: Lane,
 }
 
 impl Default for Shapes {
@@ -23,25 +27,31 @@ impl Default for Shapes {
         Shapes {
             origin: [[0.0; LANES]; 3],
             gradients: [[0.0; LANES]; 9],
+            volume: [0.0; LANES],
+            altitude: [0.0; LANES],
         }
     }
 }
 
 impl Shapes {
-    #[inline(always)]
-    pub fn load(&mut self, l: usize, mesh: &Mesh, e: usize) {
-        let origin = mesh.nodes[mesh.tets[e][0] as usize];
-        set(&mut self.origin, l, origin.to_array());
-        self.load_gradients(l, mesh, e);
-    }
-
-    /// For those who do not ask for shape functions.
-    #[inline(always)]
-    pub fn load_gradients(&mut self, l: usize, mesh: &Mesh, e: usize) {
-        for (i, g) in mesh.gradients[e].iter().enumerate() {
-            for (k, g) in g.to_array().into_iter().enumerate() {
-                self.gradients[3 * i + k][l] = g;
+    /// Of these elements.
+    pub(super) fn load(&mut self, mesh: &Mesh, elements: &[u32]) {
+        for (l, &e) in elements.iter().enumerate() {
+            if e == NONE {
+                set(&mut self.origin, l, [0.0; 3]);
+                set(&mut self.gradients, l, [0.0; 9]);
+                (self.volume[l], self.altitude[l]) = (0.0, 0.0);
+                continue;
             }
+            let e = e as usize;
+            let origin = mesh.nodes[mesh.tets[e][0] as usize];
+            set(&mut self.origin, l, origin.to_array());
+            for (i, g) in mesh.gradients[e].iter().enumerate() {
+                for (k, g) in g.to_array().into_iter().enumerate() {
+                    self.gradients[3 * i + k][l] = g;
+                }
+            }
+            (self.volume[l], self.altitude[l]) = (mesh.volumes[e], mesh.altitudes[e]);
         }
     }
 
@@ -67,18 +77,21 @@ impl Shapes {
     }
 }
 
-/// Copies a vector of each node of a cell.
+/// Copies vectors of the nodes of cells side by side.
 #[inline(always)]
-pub(super) fn load_nodes(
-    corners: &mut Corners,
-    l: usize,
-    active: &Active,
-    c: usize,
-    nodes: &[Node],
-    value: impl Fn(&Node) -> Vec3,
-) {
-    for (i, &n) in active.cell_nodes[c].iter().enumerate() {
-        set_corner(corners, l, i, value(&nodes[n as usize]));
+pub(super) fn load_nodes(corners: &mut Corners, cells: &[[u32; 4]; LANES], vectors: &[Vec3]) {
+    for (l, cell) in cells.iter().enumerate() {
+        for (i, &n) in cell.iter().enumerate() {
+            set_corner(corners, l, i, vectors[n as usize]);
+        }
+    }
+}
+
+/// Sums of a number of the nodes of cells side by side.
+#[inline(always)]
+pub(super) fn sum_nodes(sums: &mut Lane, cells: &[[u32; 4]; LANES], numbers: &[f64]) {
+    for (sum, cell) in sums.iter_mut().zip(cells) {
+        *sum = cell.iter().map(|&n| numbers[n as usize]).sum();
     }
 }
 

@@ -22,36 +22,28 @@
 //! and frictional soil becomes too weak, the more the finer the mesh (validation case
 //! `collapse-smoothing`). It is offered for comparison and is not the default.
 
-use super::{BLOCK, CellForce, CellSums, Node, to_nodes};
-use crate::Vec3;
+use super::shapes::{Corners, all_corners, load_nodes, set_corner};
+use super::shapes::{NO_CORNERS, sum_nodes};
+use super::{BLOCK, CellForce, Cells, TILES, strain, to_nodes};
+use crate::lanes::{LANES, Lane, either, get, lane_of};
 use crate::parallel::fold;
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
 use crate::tensor;
 use std::ops::Range;
 
-/// w_e, m³.
-#[inline]
-pub(super) fn weight(force: &CellForce, sum: &CellSums, closed: f64, volume: f64) -> f64 {
-    let weight = if force.filled {
-        volume
-    } else {
-        sum.volume.min(volume)
-    };
-    if closed < sum.volume {
-        weight * closed / sum.volume
-    } else {
-        weight
-    }
+/// w_e, m³, of a cell of this `whole` volume of which particles have `volume`, `closed` of it not separated.
+#[inline(always)]
+pub(super) fn weight(filled: f64, volume: f64, closed: f64, whole: f64) -> f64 {
+    let weight = either(filled > 0.0, whole, volume.min(whole));
+    either(closed < volume, weight * closed / volume, weight)
 }
 
-/// θ̄_e of the cell with these nodes.
-#[inline]
-pub(super) fn cell(corners: &[u32; 4], nodes: &[Node]) -> f64 {
-    0.25 * corners
-        .iter()
-        .map(|&n| nodes[n as usize].volumetric)
-        .sum::<f64>()
+/// θ̄_e of the cells with these nodes.
+#[inline(always)]
+pub(super) fn means(means: &mut Lane, nodes: &[[u32; 4]; LANES], volumetric: &[f64]) {
+    sum_nodes(means, nodes, volumetric);
+    means.iter_mut().for_each(|mean| *mean *= 0.25);
 }
 
 /// θ_n of each node.
@@ -59,34 +51,30 @@ pub(super) fn strains(sim: &mut Simulation) {
     if sim.plan.numerics.smoothing == Smoothing::Off {
         return;
     }
-    sum_at_nodes(sim, |node, sum, weights| {
-        node.volumetric = if weights > 0.0 { sum / weights } else { 0.0 }
-    });
+    let mut means = std::mem::take(&mut sim.shared.volumetric);
+    sum_at_nodes(sim, &mut means[..], 1.0);
+    sim.shared.volumetric = means;
 }
 
-/// Sums a value of the attached cells and their weight w_e, both in `weights`, at each node, and has
-/// `store` make something of them.
-fn sum_at_nodes(sim: &mut Simulation, store: impl Fn(&mut Node, f64, f64) + Sync) {
-    let Simulation {
-        active,
-        nodes,
-        cells,
-        ..
-    } = sim;
-    let (active, weights) = (&*active, &cells.weights[..]);
-    let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (
+/// At each node the sum of a value of the attached cells over that of their weights, both in `weights`, and
+/// over `factor`.
+fn sum_at_nodes(sim: &Simulation, means: &mut [f64], factor: f64) {
+    let (active, weights) = (&sim.active, &sim.cells.weights[..]);
+    let items = (0..means.len(), means);
+    fold(items, BLOCK, &|(slots, means): (
         Range<usize>,
-        &mut [Node],
+        &mut [f64],
     )| {
-        for (slot, node) in slots.zip(nodes) {
+        for (slot, mean) in slots.zip(means) {
             let (mut sum, mut all) = (0.0, 0.0);
-            for &(c, _) in active.attached(slot) {
-                let [value, weight] = weights[c as usize];
-                sum += value;
-                all += weight;
+            for at in active.attached(slot) {
+                let (tile, l) = lane_of(at.cell());
+                let [value, weight] = &weights[tile];
+                sum += value[l];
+                all += weight[l];
             }
-            store(node, sum, all);
+            let whole = factor * all;
+            *mean = if all > 0.0 { sum / whole } else { 0.0 };
         }
     });
 }
@@ -97,49 +85,69 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     if sim.plan.numerics.smoothing != Smoothing::Conjugate {
         return;
     }
-    for c in 0..sim.cells.forces.len() {
-        let (force, closed) = (&sim.cells.forces[c], sim.cells.stresses[c].closed);
-        let volume = sim.plan.mesh.volumes[sim.active.elements[c] as usize];
-        let weight = weight(force, &sim.cells.sums[c], closed, volume);
-        sim.cells.weights[c] = [tensor::trace(&force.stress), weight];
+    let Cells {
+        shapes,
+        sums,
+        stresses,
+        forces,
+        weights,
+        ..
+    } = &mut sim.cells;
+    for (tile, [value, own]) in weights.iter_mut().enumerate() {
+        let (sum, force) = (&sums[tile], &forces[tile]);
+        for l in 0..LANES {
+            let closed = stresses[tile].closed[l];
+            own[l] = weight(
+                force.filled[l],
+                sum.volume[l],
+                closed,
+                shapes[tile].volume[l],
+            );
+            value[l] = tensor::trace(&get(&force.stress, l));
+        }
     }
     // q_n: a trace is three times the mean, and a quarter goes to each node.
-    sum_at_nodes(sim, |node, sum, weights| {
-        let whole = 12.0 * weights;
-        node.mean_stress = if weights > 0.0 { sum / whole } else { 0.0 };
-    });
+    let mut means = std::mem::take(&mut sim.shared.mean_stress);
+    sum_at_nodes(sim, &mut means, 12.0);
+    sim.shared.mean_stress = means;
     let Simulation {
-        plan,
         active,
-        nodes,
+        shared,
         cells,
         ledger,
         ..
     } = sim;
-    let (mesh, active, nodes, weights) = (&plan.mesh, &*active, &nodes[..], &cells.weights[..]);
+    let (active, shared) = (&*active, &*shared);
+    let (shapes, weights) = (&cells.shapes[..], &cells.weights[..]);
     let items = (
         0..weights.len(),
         &mut cells.forces[..],
-        &mut cells.nodal[..],
+        &mut cells.corners[..],
     );
-    let work = fold(items, BLOCK, &|(range, forces, nodal): (
+    let work = fold(items, TILES, &|(tiles, forces, corners): (
         Range<usize>,
         &mut [CellForce],
-        &mut [[Vec3; 4]],
+        &mut [Corners],
     )| {
-        let mut work = 0.0;
-        for ((c, force), nodal) in range.zip(forces).zip(nodal) {
-            let e = active.elements[c] as usize;
-            let corners = active.cell_nodes[c].map(|n| &nodes[n as usize]);
-            let mean: f64 = corners.iter().map(|n| n.mean_stress).sum();
-            force.smoothed = mean * weights[c][1] - tensor::trace(&force.stress) / 3.0;
-            (0..3).for_each(|k| force.stress[k] += force.smoothed);
-            if before > 0.0 {
-                let moved = corners.map(|n| n.moved);
-                let gradient = super::strain::gradient(&mesh.gradients[e], moved);
-                work += force.half_smoothing_work(&gradient);
+        let (mut work, mut moved) = (0.0, NO_CORNERS);
+        let mut means = [0.0; LANES];
+        for ((tile, force), corners) in tiles.zip(forces).zip(corners) {
+            let nodes = active.tile_nodes(tile);
+            sum_nodes(&mut means, nodes, &shared.mean_stress);
+            load_nodes(&mut moved, nodes, &shared.moved);
+            for l in (0..LANES).filter(|&l| active.is_cell[tile * LANES + l]) {
+                let own = tensor::trace(&get(&force.stress, l)) / 3.0;
+                let added = means[l] * weights[tile][1][l] - own;
+                force.smoothed[l] = added;
+                (0..3).for_each(|k| force.stress[k][l] += added);
+                if before > 0.0 {
+                    let gradients = shapes[tile].gradients(l);
+                    let gradient = strain::gradient(&gradients, all_corners(&moved, l));
+                    work += 0.5 * added * tensor::trace(&tensor::strain(&gradient));
+                }
+                let pushed = to_nodes::nodal(l, &shapes[tile], force);
+                (0..4).for_each(|i| set_corner(corners, l, i, pushed[i]));
             }
-            *nodal = to_nodes::nodal(force, mesh, e);
         }
         work
     });

@@ -1,8 +1,13 @@
 //! What the step keeps per node and per cell.
 
-use super::Active;
-use crate::tensor::Voigt;
-use crate::{Mat3, Vec3};
+use super::active::Corner;
+use super::shapes::{Corners, NO_CORNERS, Shapes, corner};
+use super::{Active, TILES};
+use crate::Vec3;
+use crate::lanes::{LANES, Lane, VoigtLanes, lane_of};
+use crate::mesh::Mesh;
+use crate::parallel::fold;
+use std::ops::Range;
 
 /// A node that particles touch. Forces in N, work in J.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,69 +34,215 @@ pub struct Node {
     pub grid_velocity: Vec3,
     /// Δu_i of the last drift, m.
     pub moved: Vec3,
-    /// φ: volume of particles over volume of elements, of all elements attached.
-    pub filling: f64,
-    /// Mass over volume of all elements attached, kg/m³.
-    pub density: f64,
     /// The mass whose weight pulls at the node, kg: `mass`, but for a reference stress (see
     /// `step/reference.rs`).
     pub weighed: f64,
-    /// Averaged volumetric strain of the attached cells.
-    pub volumetric: f64,
-    /// A quarter of the averaged mean stress of the attached cells, Pa.
-    pub mean_stress: f64,
 }
 
-/// Sums over the particles of a cell that its nodes gather.
-#[derive(Clone, Copy, Debug, Default)]
+/// What cells read of nodes, in arrays of their own: they stay in the cache.
+#[derive(Clone, Debug, Default)]
+pub struct Shared {
+    /// φ: volume of particles over volume of elements, of all elements attached.
+    pub filling: Vec<f64>,
+    /// Mass over volume of all elements attached, kg/m³.
+    pub density: Vec<f64>,
+    /// Averaged volumetric strain of the attached cells.
+    pub volumetric: Vec<f64>,
+    /// A quarter of the averaged mean stress of the attached cells, Pa.
+    pub mean_stress: Vec<f64>,
+    /// Δu_i of the last drift, m.
+    pub moved: Vec<Vec3>,
+    /// What is exchanged between nodes and particles: accelerations or velocities.
+    pub given: Vec<Vec3>,
+    /// Velocities that particles are drawn to by relaxation, m/s.
+    pub grid: Vec<Vec3>,
+}
+
+impl Shared {
+    /// Of these nodes; what cells still need of the last drift is kept.
+    pub(crate) fn renew(&mut self, nodes: &[Node]) {
+        for numbers in [
+            &mut self.filling,
+            &mut self.density,
+            &mut self.volumetric,
+            &mut self.mean_stress,
+        ] {
+            numbers.resize(nodes.len(), 0.0);
+        }
+        for vectors in [&mut self.given, &mut self.grid] {
+            vectors.resize(nodes.len(), Vec3::ZERO);
+        }
+        self.moved.clear();
+        self.moved.extend(nodes.iter().map(|node| node.moved));
+    }
+}
+
+/// Sums over the particles of each cell that its nodes gather.
+#[derive(Clone, Debug)]
 pub struct CellSums {
     /// Σ m_p N_i for each node, kg.
-    pub mass: [f64; 4],
+    pub mass: [Lane; 4],
     /// Σ m_p v_p N_i for each node, kg m/s; after stage 3 with the new velocities.
-    pub momentum: [Vec3; 4],
+    pub momentum: Corners,
     /// Σ V_p, m³.
-    pub volume: f64,
+    pub volume: Lane,
     /// Σ V_p without what has opened in tension, m³: it judges filling.
-    pub solid: f64,
+    pub solid: Lane,
 }
 
 /// M_ij = Σ m_p N_i N_j of each pair of a cell's nodes: 01, 02, 03, 12, 13, 23, kg.
-pub type CellPairs = [f64; 6];
+pub type CellPairs = [Lane; 6];
 
-/// Sums over the particles of a cell that make its stress.
-#[derive(Clone, Copy, Debug, Default)]
+/// Sums over the particles of each cell that make its stress.
+#[derive(Clone, Debug)]
 pub struct CellStress {
     /// Σ σ_p V_p, J.
-    pub stress: Voigt,
+    pub stress: VoigtLanes,
     /// Σ V_p of particles that are not separated, m³.
-    pub closed: f64,
-    /// Σ λ V_p and Σ G V_p, J; kept where there is viscosity only.
-    pub moduli: [f64; 2],
+    pub closed: Lane,
+    /// Σ λ V_p and Σ G V_p, J.
+    pub moduli: [Lane; 2],
     /// Greatest constrained modulus of its particles, Pa.
-    pub wave_modulus: f64,
+    pub wave_modulus: Lane,
     /// Of particles with a reference stress: Σ σ_v V_p and Σ K₀ σ_v V_p, J, and Σ V_p, m³.
-    pub reference: [f64; 3],
+    pub reference: [Lane; 3],
 }
 
-/// Stress times volume that acts on a cell's nodes: f_i = −S ∇N_i.
-#[derive(Clone, Copy, Debug, Default)]
+/// Stress times volume that acts on each cell's nodes: f_i = −S ∇N_i.
+#[derive(Clone, Debug)]
 pub struct CellForce {
     /// σ̄ V_e if filled, else Σ σ_p V_p, J.
-    pub stress: Voigt,
+    pub stress: VoigtLanes,
     /// What smoothing has added to its mean, J.
-    pub smoothed: f64,
+    pub smoothed: Lane,
     /// The viscous part, J.
-    pub viscous: Voigt,
-    /// The mass whose weight pulls at each node, kg; set where there is a reference stress only.
-    pub weighed: [f64; 4],
-    /// Whether the cell counts as filled.
-    pub filled: bool,
+    pub viscous: VoigtLanes,
+    /// The mass whose weight pulls at each node, kg.
+    pub weighed: [Lane; 4],
+    /// 1 where the cell counts as filled.
+    pub filled: Lane,
+    /// Density by which a filled cell's waves run, kg/m³.
+    pub density: Lane,
 }
 
-impl CellForce {
-    /// Half the work of what smoothing has added, J.
-    pub(super) fn half_smoothing_work(&self, gradient: &Mat3) -> f64 {
-        0.5 * self.smoothed * (gradient.x_axis.x + gradient.y_axis.y + gradient.z_axis.z)
+/// Deformation of each cell in a step.
+#[derive(Clone, Debug)]
+pub struct CellStrain {
+    /// With ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step, the same in its middle,
+    /// ∇Δu (I + ½∇Δu)⁻¹, by columns: a rigid rotation has none of it but
+    /// spin, and its trace is the logarithmic volume strain to third order.
+    pub midpoint: [Lane; 9],
+    /// Trace of `midpoint`.
+    pub volumetric: Lane,
+}
+
+/// What the step keeps per cell, one record a tile.
+#[derive(Clone, Debug, Default)]
+pub struct Cells {
+    pub shapes: Vec<Shapes>,
+    pub sums: Vec<CellSums>,
+    pub pairs: Vec<CellPairs>,
+    pub stresses: Vec<CellStress>,
+    pub forces: Vec<CellForce>,
+    pub strains: Vec<CellStrain>,
+    /// What is smoothed times w_e, and w_e.
+    pub weights: Vec<[Lane; 2]>,
+    /// For each node, first the cells' forces, N, and then Σ_j M_ij (w_i − w_j), w being accelerations (N)
+    /// or averages (kg m/s).
+    pub corners: Vec<Corners>,
+}
+
+const ZERO: Lane = [0.0; LANES];
+
+impl Default for CellSums {
+    fn default() -> CellSums {
+        CellSums {
+            mass: [ZERO; 4],
+            momentum: NO_CORNERS,
+            volume: ZERO,
+            solid: ZERO,
+        }
+    }
+}
+
+impl Default for CellStress {
+    fn default() -> CellStress {
+        CellStress {
+            stress: [ZERO; 6],
+            closed: ZERO,
+            moduli: [ZERO; 2],
+            wave_modulus: ZERO,
+            reference: [ZERO; 3],
+        }
+    }
+}
+
+impl Default for CellForce {
+    fn default() -> CellForce {
+        CellForce {
+            stress: [ZERO; 6],
+            smoothed: ZERO,
+            viscous: [ZERO; 6],
+            weighed: [ZERO; 4],
+            filled: ZERO,
+            density: ZERO,
+        }
+    }
+}
+
+impl Default for CellStrain {
+    fn default() -> CellStrain {
+        CellStrain {
+            midpoint: [ZERO; 9],
+            volumetric: ZERO,
+        }
+    }
+}
+
+impl Cells {
+    /// Of these cells.
+    pub(crate) fn renew(&mut self, active: &Active, mesh: &Mesh) {
+        let tiles = active.tiles.len();
+        self.shapes.resize_with(tiles, Shapes::default);
+        self.sums.resize_with(tiles, CellSums::default);
+        self.pairs.resize(tiles, [ZERO; 6]);
+        self.stresses.resize_with(tiles, CellStress::default);
+        self.forces.resize_with(tiles, CellForce::default);
+        self.strains.resize_with(tiles, CellStrain::default);
+        self.weights.resize(tiles, [ZERO; 2]);
+        self.corners.resize(tiles, NO_CORNERS);
+        self.find_shapes(active, mesh);
+    }
+
+    /// Shape functions in the mesh as it is now.
+    pub(crate) fn find_shapes(&mut self, active: &Active, mesh: &Mesh) {
+        let items = (0..self.shapes.len(), &mut self.shapes[..]);
+        fold(items, TILES, &|(tiles, shapes): (
+            Range<usize>,
+            &mut [Shapes],
+        )| {
+            for (tile, shapes) in tiles.zip(shapes) {
+                let elements = &active.elements[tile * LANES..(tile + 1) * LANES];
+                shapes.load(mesh, elements);
+            }
+        });
+    }
+
+    /// Σ V_p of a cell, m³.
+    pub(crate) fn volume(&self, c: usize) -> f64 {
+        let (tile, lane) = lane_of(c);
+        self.sums[tile].volume[lane]
+    }
+
+    /// Sum of `corners` at a node.
+    #[inline]
+    pub(super) fn at_node(&self, attached: &[Corner]) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for at in attached {
+            let (tile, lane) = lane_of(at.cell());
+            sum += corner(&self.corners[tile], lane, at.local());
+        }
+        sum
     }
 }
 
@@ -115,15 +266,4 @@ pub(super) fn moved<'a>(active: &'a Active, nodes: &'a [Node]) -> impl Fn(u32) -
         }
         sum / mass
     }
-}
-
-/// Deformation of a cell in a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct CellStrain {
-    /// With ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step, the same in its middle,
-    /// ∇Δu (I + ½∇Δu)⁻¹: a rigid rotation has none of it but
-    /// spin, and its trace is the logarithmic volume strain to third order.
-    pub midpoint: Mat3,
-    /// Trace of `midpoint`.
-    pub volumetric: f64,
 }

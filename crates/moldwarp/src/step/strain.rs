@@ -1,12 +1,11 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
-use super::deformed::Deformed;
-use super::shapes::load_nodes;
-use super::{BLOCK, CellStrain, smoothing};
-use crate::lanes::{self, LANES, Lane, for_each_simd, get, set, side_by_side, whole};
+use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, load_nodes};
+use super::{CellForce, CellStrain, CellStress, CellSums, Cells, TILES, smoothing};
+use crate::lanes::{self, LANES, Lane, for_each_simd, get, set};
 use crate::parallel::fold;
 use crate::simulation::Simulation;
-use crate::{Mat3, Vec3};
+use crate::{Mat3, Vec3, tensor};
 use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation) {
@@ -37,24 +36,52 @@ fn midpoint(gradient: &Mat3) -> Mat3 {
     *gradient * inverse
 }
 
-/// Results side by side.
-struct Strains {
-    midpoint: [Lane; 9],
-    volumetric: Lane,
-    work: [Lane; 4],
+/// Half the work of a cell's stresses on its deformation, J: of the particles', of what the cell's differs
+/// from it, of the viscous part and of what smoothing has added.
+#[inline(always)]
+pub(super) fn half_work(
+    l: usize,
+    gradient: &Mat3,
+    stress: &CellStress,
+    force: &CellForce,
+) -> [f64; 4] {
+    let strain = tensor::strain(gradient);
+    let own = 0.5 * tensor::dot(&get(&stress.stress, l), &strain);
+    let smoothed = 0.5 * force.smoothed[l] * tensor::trace(&strain);
+    let all = 0.5 * tensor::dot(&get(&force.stress, l), &strain) - smoothed;
+    let viscous = 0.5 * tensor::dot(&get(&force.viscous, l), &strain);
+    [own, all - own, viscous, smoothed]
+}
+
+/// Records of a tile that the deformation works on.
+struct Worked<'a> {
+    shapes: &'a Shapes,
+    sum: &'a CellSums,
+    stress: &'a CellStress,
+    force: &'a CellForce,
 }
 
 for_each_simd! {
-    fn deform(side: &mut Deformed, strains: &mut Strains, lanes: usize) {
-        for l in 0..whole(lanes) {
-            let gradient = side.gradient(l);
+    fn deform(
+        tile: &Worked,
+        moved: &Corners,
+        strains: &mut CellStrain,
+        weights: &mut [Lane; 2],
+        works: &mut [Lane; 4],
+    ) {
+        let Worked { shapes, sum, stress, force } = tile;
+        for l in 0..LANES {
+            let gradient = gradient(&shapes.gradients(l), all_corners(moved, l));
             let midpoint = midpoint(&gradient);
             let volumetric = midpoint.x_axis.x + midpoint.y_axis.y + midpoint.z_axis.z;
             set(&mut strains.midpoint, l, midpoint.to_cols_array());
             strains.volumetric[l] = volumetric;
-            let work = side.half_work(l, &gradient);
+            let (volume, whole) = (sum.volume[l], shapes.volume[l]);
+            let weight = smoothing::weight(force.filled[l], volume, stress.closed[l], whole);
+            set(weights, l, [volumetric * weight, weight]);
+            let work = half_work(l, &gradient, stress, force);
             for k in 0..4 {
-                strains.work[k][l] += work[k];
+                works[k][l] += work[k];
             }
         }
     }
@@ -62,54 +89,44 @@ for_each_simd! {
 
 fn gradients(sim: &mut Simulation) {
     let Simulation {
-        plan,
         active,
-        nodes,
+        shared,
         cells,
         ledger,
         simd,
         ..
     } = sim;
-    let (mesh, active, nodes, simd) = (&plan.mesh, &*active, &nodes[..], *simd);
-    let (sums, stresses, forces) = (&cells.sums[..], &cells.stresses[..], &cells.forces[..]);
-    let items = (
-        0..sums.len(),
-        &mut cells.strains[..],
-        &mut cells.weights[..],
-    );
-    let work = fold(items, BLOCK, &|(range, results, weights): (
+    let (active, shared, simd) = (&*active, &*shared, *simd);
+    let Cells {
+        shapes,
+        sums,
+        stresses,
+        forces,
+        strains,
+        weights,
+        ..
+    } = cells;
+    let (shapes, sums) = (&shapes[..], &sums[..]);
+    let (stresses, forces) = (&stresses[..], &forces[..]);
+    let items = (0..sums.len(), &mut strains[..], &mut weights[..]);
+    let work = fold(items, TILES, &|(tiles, strains, weights): (
         Range<usize>,
         &mut [CellStrain],
-        &mut [[f64; 2]],
+        &mut [[Lane; 2]],
     )| {
-        let first = range.start;
-        let mut side = Deformed::default();
-        let mut strains = Strains {
-            midpoint: [[0.0; LANES]; 9],
-            volumetric: [0.0; LANES],
-            work: [[0.0; LANES]; 4],
-        };
-        for window in side_by_side(range) {
-            for (l, c) in window.clone().enumerate() {
-                let e = active.elements[c] as usize;
-                side.shapes.load_gradients(l, mesh, e);
-                load_nodes(&mut side.moved, l, active, c, nodes, |n| n.moved);
-                side.load_stresses(l, &stresses[c], &forces[c]);
-            }
-            side.clear(window.len());
-            deform(simd, &mut side, &mut strains, window.len());
-            for (l, c) in window.enumerate() {
-                let volumetric = strains.volumetric[l];
-                results[c - first] = CellStrain {
-                    midpoint: Mat3::from_cols_array(&get(&strains.midpoint, l)),
-                    volumetric,
-                };
-                let volume = mesh.volumes[active.elements[c] as usize];
-                let weight = smoothing::weight(&forces[c], &sums[c], stresses[c].closed, volume);
-                weights[c - first] = [volumetric * weight, weight];
-            }
+        let mut moved = NO_CORNERS;
+        let mut works = [[0.0; LANES]; 4];
+        for ((tile, strains), weights) in tiles.zip(strains).zip(weights) {
+            load_nodes(&mut moved, active.tile_nodes(tile), &shared.moved);
+            let tile = Worked {
+                shapes: &shapes[tile],
+                sum: &sums[tile],
+                stress: &stresses[tile],
+                force: &forces[tile],
+            };
+            deform(simd, &tile, &moved, strains, weights, &mut works);
         }
-        strains.work.each_ref().map(lanes::sum)
+        works.each_ref().map(lanes::sum)
     });
     ledger.grid_stress_work([work[0], work[1], work[2]]);
     ledger.stress_smoothing_work(work[3]);

@@ -1,23 +1,27 @@
 //! Stage 6: stresses and volumes of particles.
 
-use super::{BLOCK, CellStrain, smoothing};
+use super::{CellStrain, TILES, smoothing};
 use crate::Mat3;
-use crate::lanes::{self, LANES, Lane, VoigtLanes, Window, for_each_simd, get, set, whole};
-use crate::material::{Material, State, Strained};
-use crate::parallel::{ByCell, fold};
+use crate::lanes::{
+    self, ByTile, LANES, Lane, VoigtLanes, for_each_simd, get, load, load_one, set, store,
+    store_one, whole,
+};
+use crate::material::{Material, STATE_SIZE, Strained};
+use crate::parallel::fold;
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt};
 
 /// Stresses, state variables and volumes of some particles.
-type Arrays<'a> = (&'a mut [Voigt], &'a mut [State], &'a mut [f64]);
+type Arrays<'a> = (
+    [&'a mut [f64]; 6],
+    [&'a mut [f64]; STATE_SIZE],
+    &'a mut [f64],
+);
 
 /// Cells side by side.
-struct Cells {
-    /// ∇Δu in the middle of the step, by columns.
-    midpoint: [Lane; 9],
-    /// Volumetric strain, own and smoothed.
-    own: Lane,
+struct Side {
+    /// Volumetric strain, smoothed.
     smoothed: Lane,
     strain: VoigtLanes,
     /// Rotation of the step, by columns.
@@ -30,7 +34,6 @@ struct Points {
     volume: Lane,
     /// 1 where the material is separated and keeps its cell's own volumetric strain.
     separated: Lane,
-    material: [u16; LANES],
 }
 
 /// Works on particles side by side: [elastic, left out by smoothing, plastic], J.
@@ -41,84 +44,60 @@ pub(super) fn run(sim: &mut Simulation) {
         plan,
         particles,
         active,
-        nodes,
+        shared,
         cells,
         ledger,
         simd,
         ..
     } = sim;
-    let (active, nodes, strains, simd) = (&*active, &nodes[..], &cells.strains[..], *simd);
+    let (active, shared, strains, simd) = (&*active, &*shared, &cells.strains[..], *simd);
     let body = &particles.body;
     let (materials, bodies) = (&plan.materials, &plan.bodies);
+    let model = |body: u16| &materials[bodies[usize::from(body)].material].model;
     let smooth = plan.numerics.smoothing != Smoothing::Off;
     let arrays = (
-        &mut particles.stress[..],
-        &mut particles.state[..],
+        particles.stress.components_mut(),
+        particles.state.components_mut(),
         &mut particles.volume[..],
     );
-    let block = ByCell::new(&active.offsets, arrays);
-    let work = fold(block, BLOCK, &|block: ByCell<Arrays>| {
+    let all = ByTile::new(&active.tiles, arrays, ());
+    let work = fold(all, TILES, &|block: ByTile<Arrays, ()>| {
         let first = block.first();
-        let (stresses, states, volumes) = block.particles;
-        let mut cells = Cells::default();
+        let tiles = block.each();
+        let mut arrays = block.particles;
+        let mut side = Side::default();
         let mut points = Points::default();
         let mut works: Works = [[0.0; LANES]; 3];
-        for window in Window::of(block.cells, &active.offsets) {
-            for (l, &c) in window.cells().iter().enumerate() {
-                let strain = &strains[c as usize];
-                cells.load(l, strain);
-                if smooth {
-                    cells.smoothed[l] = smoothing::cell(&active.cell_nodes[c as usize], nodes);
-                }
+        for (number, tile) in tiles {
+            let own = &strains[number];
+            side.smoothed = own.volumetric;
+            if smooth {
+                let nodes = active.tile_nodes(number);
+                smoothing::means(&mut side.smoothed, nodes, &shared.volumetric);
             }
-            deform(simd, &mut cells, window.cells().len());
-            window.slots(|slot| {
-                for (l, &p) in slot.iter().enumerate() {
-                    let own = p as usize - first;
-                    let material = bodies[body[p as usize] as usize].material;
-                    points.material[l] = material as u16;
-                    points.volume[l] = volumes[own];
-                    set(&mut points.increment.before, l, stresses[own]);
-                    set(&mut points.increment.state, l, states[own]);
-                    let separated =
-                        (materials[material].model).is_separated(&stresses[own], &states[own]);
-                    points.separated[l] = f64::from(u8::from(separated));
-                }
-                points.volume[slot.len()..lanes::whole(slot.len())].fill(0.0);
-                strain(simd, &cells, &mut points, slot.len());
-                points.update(simd, |m| &materials[m].model, slot.len());
-                book(simd, &cells, &mut points, &mut works, slot.len());
-                for (l, &p) in slot.iter().enumerate() {
-                    let own = p as usize - first;
-                    volumes[own] = points.volume[l];
-                    stresses[own] = get(&points.increment.stress, l);
-                    states[own] = get(&points.increment.state, l);
-                }
-            });
+            deform(simd, own, &mut side);
+            for slot in tile.slots() {
+                let (start, lanes) = (slot.start - first, slot.len());
+                let body = &body[slot];
+                points.look_up(body, &model, &arrays, start);
+                strain(simd, own, &side, &mut points, &arrays, start, lanes);
+                points.update(simd, body, &model);
+                book(simd, own, &side, &mut points, &mut works, lanes);
+                keep(simd, &points, &mut arrays, start, lanes);
+            }
         }
         works.each_ref().map(lanes::sum)
     });
     ledger.particle_stress_work(work);
 }
 
-impl Default for Cells {
-    fn default() -> Cells {
-        Cells {
-            midpoint: [[0.0; LANES]; 9],
-            own: [0.0; LANES],
+impl Default for Side {
+    fn default() -> Side {
+        Side {
             smoothed: [0.0; LANES],
             strain: [[0.0; LANES]; 6],
             turn: [[0.0; LANES]; 9],
         }
-    }
-}
-
-impl Cells {
-    #[inline]
-    fn load(&mut self, l: usize, strain: &CellStrain) {
-        set(&mut self.midpoint, l, strain.midpoint.to_cols_array());
-        self.own[l] = strain.volumetric;
-        self.smoothed[l] = strain.volumetric;
     }
 }
 
@@ -128,31 +107,45 @@ impl Default for Points {
             increment: Strained::default(),
             volume: [0.0; LANES],
             separated: [0.0; LANES],
-            material: [0; LANES],
         }
     }
 }
 
 impl Points {
-    /// New stresses, where materials meet one material after the other.
-    fn update<'m>(
+    /// Finds out which particles are separated.
+    fn look_up<'m>(
         &mut self,
-        simd: lanes::Simd,
-        model: impl Fn(usize) -> &'m Material,
-        lanes: usize,
+        body: &[u16],
+        model: impl Fn(u16) -> &'m Material,
+        (stresses, states, _): &Arrays,
+        start: usize,
     ) {
-        let materials = &self.material[..lanes];
-        let first = materials[0];
-        if materials.iter().all(|&m| m == first) {
-            return model(first.into()).update_lanes(simd, &mut self.increment, lanes);
+        let lanes = body.len();
+        self.separated[..lanes].fill(0.0);
+        for (l, &body) in body.iter().enumerate() {
+            let model = model(body);
+            let p = start + l;
+            if model.opening().is_some_and(|k| states[k][p] > 0.0) {
+                let stress = std::array::from_fn(|k| stresses[k][p]);
+                let state = std::array::from_fn(|k| states[k][p]);
+                self.separated[l] = f64::from(u8::from(model.is_separated(&stress, &state)));
+            }
+        }
+    }
+
+    /// New stresses, where materials meet one material after the other.
+    fn update<'m>(&mut self, simd: lanes::Simd, body: &[u16], model: impl Fn(u16) -> &'m Material) {
+        let (first, lanes) = (body[0], body.len());
+        if body.iter().all(|&b| b == first) {
+            return model(first).update_lanes(simd, &mut self.increment, lanes);
         }
         let before = self.increment.clone();
         let mut done = [false; LANES];
         self.increment.plastic = true;
         while let Some(next) = (0..lanes).find(|&l| !done[l]) {
             let mut all = before.clone();
-            model(materials[next].into()).update_lanes(simd, &mut all, lanes);
-            for l in (0..lanes).filter(|&l| materials[l] == materials[next]) {
+            model(body[next]).update_lanes(simd, &mut all, lanes);
+            for l in (0..lanes).filter(|&l| body[l] == body[next]) {
                 set(&mut self.increment.stress, l, get(&all.stress, l));
                 set(&mut self.increment.state, l, get(&all.state, l));
                 let plastic_strain = match all.plastic {
@@ -174,27 +167,40 @@ fn growth(volumetric: f64) -> f64 {
 
 for_each_simd! {
     /// Strain and rotation of cells.
-    fn deform(cells: &mut Cells, lanes: usize) {
-        for l in 0..whole(lanes) {
-            let midpoint = Mat3::from_cols_array(&get(&cells.midpoint, l));
+    fn deform(own: &CellStrain, side: &mut Side) {
+        for l in 0..LANES {
+            let midpoint = Mat3::from_cols_array(&get(&own.midpoint, l));
             let mut strain = tensor::strain(&midpoint);
-            let change = (cells.smoothed[l] - cells.own[l]) / 3.0;
+            let change = (side.smoothed[l] - own.volumetric[l]) / 3.0;
             (0..3).for_each(|k| strain[k] += change);
-            set(&mut cells.strain, l, strain);
-            set(&mut cells.turn, l, tensor::spin_rotation(&midpoint).to_cols_array());
+            set(&mut side.strain, l, strain);
+            set(&mut side.turn, l, tensor::spin_rotation(&midpoint).to_cols_array());
         }
     }
 }
 
 for_each_simd! {
     /// Turns stresses and gives each particle its strain.
-    fn strain(cells: &Cells, points: &mut Points, lanes: usize) {
+    fn strain(
+        own: &CellStrain,
+        side: &Side,
+        points: &mut Points,
+        arrays: &Arrays,
+        start: usize,
+        lanes: usize,
+    ) {
+        let (stresses, states, volumes) = arrays;
+        load(&mut points.increment.before, &stresses.each_ref().map(|s| &**s), start);
+        load(&mut points.increment.state, &states.each_ref().map(|s| &**s), start);
+        load_one(&mut points.volume, volumes, start);
+        points.volume[lanes..whole(lanes)].fill(0.0);
         for l in 0..whole(lanes) {
-            let turn = Mat3::from_cols_array(&get(&cells.turn, l));
+            let turn = Mat3::from_cols_array(&get(&side.turn, l));
             let turned = tensor::rotate(&get(&points.increment.before, l), &turn);
             set(&mut points.increment.before, l, turned);
-            let mut strain = get(&cells.strain, l);
-            let left_out = (cells.own[l] - cells.smoothed[l]) * (1.0 / 3.0) * points.separated[l];
+            let mut strain = get(&side.strain, l);
+            let apart = points.separated[l];
+            let left_out = (own.volumetric[l] - side.smoothed[l]) * (1.0 / 3.0) * apart;
             (0..3).for_each(|k| strain[k] += left_out);
             set(&mut points.increment.strain, l, strain);
         }
@@ -203,11 +209,18 @@ for_each_simd! {
 
 for_each_simd! {
     /// Changes volumes and books the work.
-    fn book(cells: &Cells, points: &mut Points, works: &mut Works, lanes: usize) {
+    fn book(
+        own: &CellStrain,
+        side: &Side,
+        points: &mut Points,
+        works: &mut Works,
+        lanes: usize,
+    ) {
         let increment = &points.increment;
         for l in 0..whole(lanes) {
-            let left_out = (cells.own[l] - cells.smoothed[l]) * (1.0 - points.separated[l]);
-            let growth = growth(cells.own[l] - left_out);
+            let volumetric = own.volumetric[l];
+            let left_out = (volumetric - side.smoothed[l]) * (1.0 - points.separated[l]);
+            let growth = growth(volumetric - left_out);
             let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
             let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]));
             let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);
@@ -220,8 +233,9 @@ for_each_simd! {
             for l in 0..whole(lanes) {
                 let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
                 let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]));
-                let volumetric = cells.own[l]
-                    - (cells.own[l] - cells.smoothed[l]) * (1.0 - points.separated[l]);
+                let left_out =
+                    (own.volumetric[l] - side.smoothed[l]) * (1.0 - points.separated[l]);
+                let volumetric = own.volumetric[l] - left_out;
                 // The volume is the new one by now.
                 let middle_volume = 0.5 * points.volume[l] * (1.0 + 1.0 / growth(volumetric));
                 let plastic_strain = get(&increment.plastic_strain, l);
@@ -230,5 +244,15 @@ for_each_simd! {
                 works[2][l] += plastic;
             }
         }
+    }
+}
+
+for_each_simd! {
+    /// Copies what is new to the particles.
+    fn keep(points: &Points, arrays: &mut Arrays, start: usize, lanes: usize) {
+        let (stresses, states, volumes) = arrays;
+        store(&points.increment.stress, stresses, start, lanes);
+        store(&points.increment.state, states, start, lanes);
+        store_one(&points.volume, volumes, start, lanes);
     }
 }

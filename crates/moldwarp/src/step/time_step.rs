@@ -1,9 +1,10 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
-use super::{BLOCK, correction};
-use crate::parallel::{Smallest, fold};
+use super::shapes::Shapes;
+use super::{CellForce, CellStress, CellSums, TILES, correction};
+use crate::lanes::{LANES, Lane, either, for_each_simd, get};
+use crate::parallel::{Smallest, Sum, fold};
 use crate::simulation::Simulation;
-use std::ops::Range;
 
 /// A forced step that would be unstable, or a state that has none.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
@@ -50,41 +51,68 @@ pub(super) fn choose(sim: &Simulation) -> Result<f64, TimeStepError> {
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
 pub(crate) fn critical(sim: &Simulation) -> f64 {
     let Simulation {
-        plan,
-        active,
-        nodes,
-        cells,
-        ..
+        plan, cells, simd, ..
     } = sim;
-    let partly = correction::stiffening(plan.numerics.mass);
-    let stiffest = sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max);
-    fold(0..cells.sums.len(), BLOCK, &|range: Range<usize>| {
-        let mut smallest = Smallest::default();
-        for c in range {
-            let sum = &cells.sums[c];
-            let modulus = if sum.volume > 0.0 {
-                cells.stresses[c].wave_modulus
-            } else {
-                stiffest
-            };
-            let density = if cells.forces[c].filled {
-                active.cell_nodes[c]
-                    .iter()
-                    .map(|&n| nodes[n as usize].density)
-                    .sum::<f64>()
-                    * 0.25
-            } else if sum.solid > 0.0 {
-                sum.mass.iter().sum::<f64>() / (sum.solid * partly)
-            } else {
-                continue;
-            };
-            let altitude = plan.mesh.altitudes[active.elements[c] as usize];
-            let travel = altitude / (modulus / density).sqrt();
-            let xi = plan.numerics.viscosity / travel;
-            let step = travel * ((1.0 + xi * xi).sqrt() - xi);
-            smallest = crate::parallel::Sum::plus(smallest, Smallest(step));
-        }
-        smallest
-    })
+    let limits = Limits {
+        partly: correction::stiffening(plan.numerics.mass),
+        stiffest: sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max),
+        viscosity: plan.numerics.viscosity,
+    };
+    let records = (
+        &cells.shapes[..],
+        (&cells.sums[..], &cells.stresses[..], &cells.forces[..]),
+    );
+    type Records<'a> = (
+        &'a [Shapes],
+        (&'a [CellSums], &'a [CellStress], &'a [CellForce]),
+    );
+    fold(
+        records,
+        TILES,
+        &|(shapes, (sums, stresses, forces)): Records| {
+            let mut smallest = Smallest::default();
+            let mut steps = [0.0; LANES];
+            let records = shapes.iter().zip(sums).zip(stresses).zip(forces);
+            for (((shapes, sum), stress), force) in records {
+                times(*simd, &limits, shapes, sum, stress, force, &mut steps);
+                for step in steps {
+                    smallest = smallest.plus(Smallest(step));
+                }
+            }
+            smallest
+        },
+    )
     .0
+}
+
+/// What all cells share.
+struct Limits {
+    partly: f64,
+    stiffest: f64,
+    viscosity: f64,
+}
+
+for_each_simd! {
+    /// The stable step of each cell; infinite where there is no material.
+    fn times(
+        limits: &Limits,
+        shapes: &Shapes,
+        sum: &CellSums,
+        stress: &CellStress,
+        force: &CellForce,
+        steps: &mut Lane,
+    ) {
+        for l in 0..LANES {
+            let modulus = either(sum.volume[l] > 0.0, stress.wave_modulus[l], limits.stiffest);
+            let mass = get(&sum.mass, l).iter().sum::<f64>();
+            let filled = force.filled[l] > 0.0;
+            let own = mass / (sum.solid[l] * limits.partly);
+            let density = either(filled, force.density[l], own);
+            let travel = shapes.altitude[l] / (modulus / density).sqrt();
+            let xi = limits.viscosity / travel;
+            let step = travel * ((1.0 + xi * xi).sqrt() - xi);
+            let holds = filled | (sum.solid[l] > 0.0);
+            steps[l] = either(holds, step, f64::INFINITY);
+        }
+    }
 }

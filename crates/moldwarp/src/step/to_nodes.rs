@@ -1,9 +1,11 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
-use super::deformed::Deformed;
-use super::shapes::{all_corners, load_nodes, set_corner};
-use super::{Active, BLOCK, CellForce, CellStress, CellSums, Node, smoothing, sums};
-use crate::lanes::{self, LANES, Lane, for_each_simd, get, side_by_side, whole};
+use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, corner, load_nodes, set_corner};
+use super::{
+    Active, BLOCK, CellForce, CellStress, CellSums, Cells, Node, TILES, shapes, smoothing, strain,
+    sums,
+};
+use crate::lanes::{self, LANES, Lane, Simd, either, for_each_simd, get, lane_of, set};
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::fold;
@@ -33,25 +35,32 @@ fn sum_nodes(sim: &mut Simulation) {
         contacts,
         active,
         nodes,
+        shared,
         cells,
         ..
     } = sim;
     let (active, sums, mesh) = (&*active, &cells.sums, &plan.mesh);
     let (walls, contacts) = (&*walls, &*contacts);
     let grid_nodes = walls.count(mesh) as u32;
-    let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (
+    let numbers = (&mut shared.filling[..], &mut shared.density[..]);
+    let items = (0..nodes.len(), &mut nodes[..], numbers);
+    type Numbers<'a> = (&'a mut [f64], &'a mut [f64]);
+    fold(items, BLOCK, &|(slots, nodes, (fillings, densities)): (
         Range<usize>,
         &mut [Node],
+        Numbers,
     )| {
-        for (slot, node) in slots.zip(nodes) {
+        for ((slot, node), (filling, density)) in
+            slots.zip(nodes).zip(fillings.iter_mut().zip(densities))
+        {
             let (mut mass, mut momentum, mut volume, mut all_mass) = (0.0, Vec3::ZERO, 0.0, 0.0);
-            for &(c, local) in active.attached(slot) {
-                let sum = &sums[c as usize];
-                mass += sum.mass[local as usize];
-                momentum += sum.momentum[local as usize];
-                volume += sum.solid;
-                all_mass += sum.mass[0] + sum.mass[1] + sum.mass[2] + sum.mass[3];
+            for at in active.attached(slot) {
+                let (tile, l) = lane_of(at.cell());
+                let sum = &sums[tile];
+                mass += sum.mass[at.local()][l];
+                momentum += corner(&sum.momentum, l, at.local());
+                volume += sum.solid[l];
+                all_mass += sum.mass[0][l] + sum.mass[1][l] + sum.mass[2][l] + sum.mass[3][l];
             }
             let grid = active.keys[slot] % grid_nodes;
             let mut whole = walls.volume(mesh, grid);
@@ -68,16 +77,17 @@ fn sum_nodes(sim: &mut Simulation) {
             } else {
                 Vec3::ZERO
             };
-            node.filling = volume / whole;
-            node.density = all_mass / whole;
+            *filling = volume / whole;
+            *density = all_mass / whole;
             node.load = Vec3::ZERO;
         }
     });
 }
 
 /// Whether a cell with these corners counts as filled.
-pub(super) fn is_filled(corners: &[u32; 4], nodes: &[Node]) -> bool {
-    corners.iter().all(|&n| nodes[n as usize].filling > FILLED)
+#[inline(always)]
+pub(super) fn is_filled(corners: &[u32; 4], filling: &[f64]) -> bool {
+    corners.iter().all(|&n| filling[n as usize] > FILLED)
 }
 
 /// Stress times volume of each cell, the forces that it makes, and the part of its work that belongs to
@@ -86,7 +96,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     let Simulation {
         plan,
         active,
-        nodes,
+        shared,
         cells,
         ledger,
         clock,
@@ -95,8 +105,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
         simd,
         ..
     } = sim;
-    let (mesh, active, nodes, simd) = (&plan.mesh, &*active, &nodes[..], *simd);
-    let (sums, stresses) = (&cells.sums[..], &cells.stresses[..]);
+    let (mesh, active, shared, simd) = (&plan.mesh, &*active, &*shared, *simd);
     let reference = reference.as_ref().map(|r| r.at(*gravity));
     let mixed = plan.numerics.integration == Integration::Mixed;
     // A viscous stress is C : ε̇ times this over the last step; there is none before the first.
@@ -106,76 +115,127 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
         0.0
     };
     debug_assert!(before == 0.0 || (2.0 * before - clock.dt).abs() <= 1e-12 * clock.dt);
-    let items = (0..sums.len(), &mut cells.forces[..], &mut cells.nodal[..]);
-    let work = fold(items, BLOCK, &|(range, forces, nodal): (
+    let Cells {
+        shapes,
+        sums,
+        stresses,
+        forces,
+        corners,
+        ..
+    } = cells;
+    let (shapes, sums, stresses) = (&shapes[..], &sums[..], &stresses[..]);
+    let items = (0..sums.len(), &mut forces[..], &mut corners[..]);
+    let work = fold(items, TILES, &|(range, forces, corners): (
         Range<usize>,
         &mut [CellForce],
-        &mut [[Vec3; 4]],
+        &mut [Corners],
     )| {
-        let first = range.start;
-        let mut side = Deformed::default();
+        let mut moved = NO_CORNERS;
         let mut work: [Lane; 3] = [[0.0; LANES]; 3];
-        for window in side_by_side(range) {
-            for (l, c) in window.clone().enumerate() {
-                let e = active.elements[c] as usize;
-                let (sum, stress) = (&sums[c], &stresses[c]);
-                let force = &mut forces[c - first];
-                force.filled = mixed && is_filled(&active.cell_nodes[c], nodes);
-                force.weighed = sum.mass;
-                force.stress = if force.filled {
-                    let around = around(c, active, mesh, sums, stresses);
-                    let mean = match &reference {
-                        Some(reference) => {
-                            force.weighed = reference.weighed(mesh, e, sum.mass, &around);
-                            reference.mean_stress(mesh, e, &around)
-                        }
-                        None => around.mean_stress(),
-                    };
-                    mean.map(|s| s * mesh.volumes[e])
-                } else {
-                    stress.stress
-                };
-                force.smoothed = 0.0;
-                force.viscous = [0.0; 6];
-                side.shapes.load_gradients(l, mesh, e);
-                load_nodes(&mut side.moved, l, active, c, nodes, |n| n.moved);
-                if per_step > 0.0 {
-                    let fuller = if force.filled && sum.volume > 0.0 {
-                        mesh.volumes[e] / sum.volume
-                    } else {
-                        1.0
-                    };
-                    let gradient = side.gradient(l);
-                    force.viscous =
-                        viscous(&gradient, stress.moduli.map(|m| m * per_step * fuller));
+        for ((tile, force), corners) in range.zip(forces).zip(corners) {
+            let nodes = active.tile_nodes(tile);
+            for l in 0..LANES {
+                let filled = mixed && active.is_cell[tile * LANES + l];
+                let filled = filled && is_filled(&nodes[l], &shared.filling);
+                force.filled[l] = f64::from(u8::from(filled));
+            }
+            shapes::sum_nodes(&mut force.density, nodes, &shared.density);
+            let (shapes, sum, stress) = (&shapes[tile], &sums[tile], &stresses[tile]);
+            stand_in(simd, shapes, sum, stress, force);
+            for l in 0..LANES {
+                if force.filled[l] == 0.0 || (sum.volume[l] > 0.0 && reference.is_none()) {
+                    continue;
                 }
-                side.load_stresses(l, stress, force);
+                let c = tile * LANES + l;
+                let e = active.elements[c] as usize;
+                let around = around(c, active, mesh, sums, stresses);
+                let mean = match &reference {
+                    Some(reference) => {
+                        let weighed = reference.weighed(mesh, e, get(&sum.mass, l), &around);
+                        set(&mut force.weighed, l, weighed);
+                        reference.mean_stress(mesh, e, &around)
+                    }
+                    None => around.mean_stress(),
+                };
+                set(&mut force.stress, l, mean.map(|s| s * mesh.volumes[e]));
             }
-            let lanes = window.len();
-            side.clear(lanes);
             if before > 0.0 {
-                half_work(simd, &mut side, &mut work, lanes);
+                load_nodes(&mut moved, nodes, &shared.moved);
+                resist(simd, shapes, sum, stress, force, &moved, per_step);
+                half_work(simd, shapes, stress, force, &moved, &mut work);
             }
-            push(simd, &mut side, lanes);
-            for (l, c) in window.enumerate() {
-                nodal[c - first] = all_corners(&side.force, l);
-            }
+            push(simd, shapes, force, corners);
         }
         work.each_ref().map(lanes::sum)
     });
     ledger.grid_stress_work(work);
 }
 
-/// f_i = −S ∇N_i.
-pub(super) fn nodal(force: &CellForce, mesh: &Mesh, e: usize) -> [Vec3; 4] {
-    let stress = std::array::from_fn(|k| force.stress[k] + force.viscous[k]);
-    mesh.all_gradients(e).map(|g| -tensor::times(&stress, g))
+for_each_simd! {
+    /// The stress of cells of which the particles, and no others, decide.
+    fn stand_in(shapes: &Shapes, sum: &CellSums, stress: &CellStress, force: &mut CellForce) {
+        for l in 0..LANES {
+            let (filled, volume) = (force.filled[l] > 0.0, sum.volume[l]);
+            for k in 0..6 {
+                let own = stress.stress[k][l];
+                let mean = own / volume;
+                force.stress[k][l] = either(filled, mean * shapes.volume[l], own);
+            }
+            for i in 0..4 {
+                force.weighed[i][l] = sum.mass[i][l];
+            }
+            force.smoothed[l] = 0.0;
+            force.density[l] *= 0.25;
+        }
+    }
+}
+
+/// Viscous stresses; `per_step` is what a strain of the last step is multiplied by.
+fn resist(
+    simd: Simd,
+    shapes: &Shapes,
+    sum: &CellSums,
+    stress: &CellStress,
+    force: &mut CellForce,
+    moved: &Corners,
+    per_step: f64,
+) {
+    if per_step == 0.0 {
+        return;
+    }
+    resist_strain(simd, shapes, sum, stress, force, moved, per_step);
 }
 
 for_each_simd! {
-    fn half_work(side: &mut Deformed, work: &mut [Lane; 3], lanes: usize) {
-        for l in 0..whole(lanes) {
-            let own = side.half_work(l, &side.gradient(l));
+    fn resist_strain(
+        shapes: &Shapes,
+        sum: &CellSums,
+        stress: &CellStress,
+        force: &mut CellForce,
+        moved: &Corners,
+        per_step: f64,
+    ) {
+        for l in 0..LANES {
+            let full = (force.filled[l] > 0.0) & (sum.volume[l] > 0.0);
+            let fuller = either(full, shapes.volume[l] / sum.volume[l], 1.0);
+            let moduli = get(&stress.moduli, l).map(|m| m * per_step * fuller);
+            let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
+            set(&mut force.viscous, l, viscous(&gradient, moduli));
+        }
+    }
+}
+
+for_each_simd! {
+    fn half_work(
+        shapes: &Shapes,
+        stress: &CellStress,
+        force: &CellForce,
+        moved: &Corners,
+        work: &mut [Lane; 3],
+    ) {
+        for l in 0..LANES {
+            let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
+            let own = strain::half_work(l, &gradient, stress, force);
             for k in 0..3 {
                 work[k][l] += own[k];
             }
@@ -184,17 +244,23 @@ for_each_simd! {
 }
 
 for_each_simd! {
-    /// [`nodal`].
-    fn push(side: &mut Deformed, lanes: usize) {
-        for l in 0..whole(lanes) {
-            let (cell, viscous) = (get(&side.cell, l), get(&side.viscous, l));
-            let stress: Voigt = std::array::from_fn(|k| cell[k] + viscous[k]);
-            let [b, c, d] = side.shapes.gradients(l);
-            for (i, g) in [-(b + c + d), b, c, d].into_iter().enumerate() {
-                set_corner(&mut side.force, l, i, -tensor::times(&stress, g));
+    /// f_i = −S ∇N_i.
+    fn push(shapes: &Shapes, force: &CellForce, corners: &mut Corners) {
+        for l in 0..LANES {
+            for (i, f) in nodal(l, shapes, force).into_iter().enumerate() {
+                set_corner(corners, l, i, f);
             }
         }
     }
+}
+
+/// f_i = −S ∇N_i.
+#[inline(always)]
+pub(super) fn nodal(l: usize, shapes: &Shapes, force: &CellForce) -> [Vec3; 4] {
+    let (cell, viscous) = (get(&force.stress, l), get(&force.viscous, l));
+    let stress: Voigt = std::array::from_fn(|k| cell[k] + viscous[k]);
+    let [b, c, d] = shapes.gradients(l);
+    [-(b + c + d), b, c, d].map(|g| -tensor::times(&stress, g))
 }
 
 /// Sums that make the mean of a cell.
@@ -218,10 +284,10 @@ impl Around {
         }
     }
 
-    fn add(&mut self, sum: &CellSums, stress: &CellStress) {
-        add_scaled(&mut self.stress, &stress.stress, 1.0);
-        self.volume += sum.volume;
-        for (own, more) in self.reference.iter_mut().zip(stress.reference) {
+    fn add(&mut self, l: usize, sum: &CellSums, stress: &CellStress) {
+        add_scaled(&mut self.stress, &get(&stress.stress, l), 1.0);
+        self.volume += sum.volume[l];
+        for (own, more) in self.reference.iter_mut().zip(get(&stress.reference, l)) {
             *own += more;
         }
     }
@@ -237,9 +303,11 @@ fn around(
     stresses: &[CellStress],
 ) -> Around {
     let mut around = Around::default();
-    if sums[c].volume > 0.0 {
-        around.stress = stresses[c].stress;
-        (around.volume, around.reference) = (sums[c].volume, stresses[c].reference);
+    let (tile, l) = lane_of(c);
+    if sums[tile].volume[l] > 0.0 {
+        around.stress = get(&stresses[tile].stress, l);
+        around.volume = sums[tile].volume[l];
+        around.reference = get(&stresses[tile].reference, l);
         return around;
     }
     for &neighbour in mesh.neighbours[active.elements[c] as usize]
@@ -248,13 +316,15 @@ fn around(
     {
         let other = active.cell(neighbour as usize, usize::from(active.fields[c]));
         if let Some(other) = other.filter(|&other| active.share_a_face(c, other)) {
-            around.add(&sums[other], &stresses[other]);
+            let (tile, l) = lane_of(other);
+            around.add(l, &sums[tile], &stresses[tile]);
         }
     }
     around
 }
 
 /// Moduli (λ, G) times strain.
+#[inline(always)]
 fn viscous(gradient: &Mat3, [lame, shear]: [f64; 2]) -> Voigt {
     let strain = tensor::strain(gradient);
     let pressure = lame * tensor::trace(&strain);

@@ -4,19 +4,19 @@
 use super::shapes::{
     Corners, NO_CORNERS, Shapes, all_corners, corner, interpolate, load_nodes, set_corner,
 };
-use super::{BLOCK, CellSums};
+use super::{CellSums, TILES};
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, Window, for_each_simd, get, set, sum, whole};
-use crate::parallel::{ByCell, fold};
+use crate::lanes::{
+    ByTile, LANES, Lane, for_each_simd, get, load, load_one, set, store, sum as sum_lanes, whole,
+};
+use crate::parallel::fold;
 use crate::simulation::Simulation;
 
 /// Cells and particles side by side.
 struct Kick {
-    shapes: Shapes,
     received: Corners,
     /// v_i + h a_i, for relaxation.
     grid: Corners,
-    momentum: Corners,
     position: [Lane; 3],
     velocity: [Lane; 3],
     mass: Lane,
@@ -28,10 +28,8 @@ impl Default for Kick {
     fn default() -> Kick {
         let vector = [[0.0; LANES]; 3];
         Kick {
-            shapes: Shapes::default(),
             received: NO_CORNERS,
             grid: NO_CORNERS,
-            momentum: NO_CORNERS,
             position: vector,
             velocity: vector,
             mass: [0.0; LANES],
@@ -47,64 +45,85 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         particles,
         active,
         nodes,
+        shared,
         cells,
         ledger,
         simd,
         ..
     } = sim;
-    let (mesh, active, nodes, simd) = (&plan.mesh, &*active, &nodes[..], *simd);
     // Share of the mesh's velocity that particles take on in a kick.
     let blend = -libm::expm1(-plan.numerics.pic_rate * h);
-    let (position, mass) = (&particles.position, &particles.mass);
-    let block = ByCell::new(&active.offsets, &mut particles.velocity[..]);
-    let sums = fold((block, &mut cells.sums[..]), BLOCK, &|(block, sums): (
-        ByCell<&mut [Vec3]>,
-        &mut [CellSums],
-    )| {
-        let (first, first_cell) = (block.first(), block.cells.start);
-        let velocities = block.particles;
-        sums.iter_mut().for_each(|s| s.momentum = [Vec3::ZERO; 4]);
-        let mut kick = Kick::default();
-        for window in Window::of(block.cells, &active.offsets) {
-            for (l, &c) in window.cells().iter().enumerate() {
-                let c = c as usize;
-                kick.shapes.load(l, mesh, active.elements[c] as usize);
-                load_nodes(&mut kick.received, l, active, c, nodes, |n| n.received);
-                if blend > 0.0 {
-                    let moved = |n: &super::Node| n.velocity + n.received * h;
-                    load_nodes(&mut kick.grid, l, active, c, nodes, moved);
-                }
-            }
-            kick.momentum = NO_CORNERS;
-            window.slots(|slot| {
-                for (l, &p) in slot.iter().enumerate() {
-                    let p = p as usize;
-                    set(&mut kick.position, l, position[p].to_array());
-                    set(&mut kick.velocity, l, velocities[p - first].to_array());
-                    kick.mass[l] = mass[p];
-                }
-                kick.mass[slot.len()..whole(slot.len())].fill(0.0);
-                accelerate(simd, &mut kick, h, blend, slot.len());
-                for (l, &p) in slot.iter().enumerate() {
-                    velocities[p as usize - first] = Vec3::from_array(get(&kick.velocity, l));
-                }
-            });
-            for (l, &c) in window.cells().iter().enumerate() {
-                let momentum = &mut sums[c as usize - first_cell].momentum;
-                for i in 0..4 {
-                    momentum[i] += corner(&kick.momentum, l, i);
-                }
-            }
+    if blend > 0.0 {
+        for (grid, node) in shared.grid.iter_mut().zip(&*nodes) {
+            *grid = node.velocity + node.received * h;
         }
-        kick.energy.each_ref().map(sum)
+    }
+    let (active, shared, simd) = (&*active, &*shared, *simd);
+    let (position, mass) = (particles.position.components(), &particles.mass[..]);
+    type Velocities<'a> = [&'a mut [f64]; 3];
+    let velocities = particles.velocity.components_mut();
+    let records = (&mut cells.sums[..], &cells.shapes[..]);
+    let all = ByTile::new(&active.tiles, velocities, records);
+    type Records<'a> = (&'a mut [CellSums], &'a [Shapes]);
+    let sums = fold(all, TILES, &|block: ByTile<Velocities, Records>| {
+        let first = block.first();
+        let tiles = block.each();
+        let (mut velocity, (sums, shapes)) = (block.particles, block.cells);
+        let mut kick = Kick::default();
+        for (((number, tile), sum), shapes) in tiles.zip(sums).zip(shapes) {
+            let nodes = active.tile_nodes(number);
+            load_nodes(&mut kick.received, nodes, &shared.given);
+            if blend > 0.0 {
+                load_nodes(&mut kick.grid, nodes, &shared.grid);
+            }
+            sum.momentum = NO_CORNERS;
+            for slot in tile.slots() {
+                let points = Points {
+                    position,
+                    mass,
+                    start: slot.start,
+                    first,
+                };
+                let (momentum, lanes) = (&mut sum.momentum, slot.len());
+                let own = &mut velocity;
+                accelerate(
+                    simd, &mut kick, &points, shapes, own, momentum, h, blend, lanes,
+                );
+            }
+            tile.gather(&mut sum.momentum);
+        }
+        kick.energy.each_ref().map(sum_lanes)
     });
     ledger.end_kick(sums, before, after);
 }
 
+/// The particles of a slot.
+struct Points<'a> {
+    position: [&'a [f64]; 3],
+    mass: &'a [f64],
+    /// The first of them, and the first of the block.
+    start: usize,
+    first: usize,
+}
+
 for_each_simd! {
-    fn accelerate(kick: &mut Kick, h: f64, blend: f64, lanes: usize) {
+    fn accelerate(
+        kick: &mut Kick,
+        points: &Points,
+        shapes: &Shapes,
+        velocity: &mut [&mut [f64]; 3],
+        momentum: &mut Corners,
+        h: f64,
+        blend: f64,
+        lanes: usize,
+    ) {
+        let own = points.start - points.first;
+        load(&mut kick.position, &points.position, points.start);
+        load(&mut kick.velocity, &velocity.each_ref().map(|v| &**v), own);
+        load_one(&mut kick.mass, points.mass, points.start);
+        kick.mass[lanes..whole(lanes)].fill(0.0);
         for l in 0..whole(lanes) {
-            let n = kick.shapes.at(l, Vec3::from_array(get(&kick.position, l)));
+            let n = shapes.at(l, Vec3::from_array(get(&kick.position, l)));
             let a = interpolate(n, all_corners(&kick.received, l));
             let m = kick.mass[l];
             let mut v = Vec3::from_array(get(&kick.velocity, l));
@@ -119,9 +138,10 @@ for_each_simd! {
             kick.energy[2][l] += 0.5 * m * v.length_squared();
             set(&mut kick.velocity, l, v.to_array());
             for i in 0..4 {
-                let sum = corner(&kick.momentum, l, i) + v * (n[i] * m);
-                set_corner(&mut kick.momentum, l, i, sum);
+                let sum = corner(momentum, l, i) + v * (n[i] * m);
+                set_corner(momentum, l, i, sum);
             }
         }
+        store(&kick.velocity, velocity, own, lanes);
     }
 }

@@ -80,7 +80,7 @@ fn compute(h: f64, gap_check: bool) -> (Outcome, setup::Balance) {
         let depth = depth.get_or_insert_with(|| {
             let of = |place: &Option<u32>| {
                 let i = place.expect("all are there") as usize;
-                let z = p.position[i].z;
+                let z = p.position.at(i).z;
                 if p.body[i] == 0 {
                     FLOOR - z
                 } else {
@@ -91,7 +91,7 @@ fn compute(h: f64, gap_check: bool) -> (Outcome, setup::Balance) {
         });
         let (mut top, mut bottom) = (f64::NEG_INFINITY, f64::INFINITY);
         for i in 0..p.len() {
-            let (z, d) = (p.position[i].z, depth[p.id[i] as usize]);
+            let (z, d) = (p.position.at(i).z, depth[p.id[i] as usize]);
             // Of the outermost layer only: farther in, strain moves the face that is inferred.
             if d < 0.3 * h {
                 if p.body[i] == 0 {
@@ -106,7 +106,7 @@ fn compute(h: f64, gap_check: bool) -> (Outcome, setup::Balance) {
             let touched = o.touched.get_or_insert([s.time(); 2]);
             touched[1] = s.time();
         }
-        let v = mean(s, 1, |i| p.velocity[i]).z / SPEED;
+        let v = mean(s, 1, |i| p.velocity.at(i)).z / SPEED;
         o.motion.push((s.time(), v));
         o.restitution = v;
         let e = s.energies();

@@ -118,7 +118,7 @@ fn compute(tool: Tool, h: f64, friction: f64, gap_check: bool, base: bool) -> (O
         let p = s.particles();
         let momentum = |body: u16| -> f64 {
             let own = (0..p.len()).filter(|&i| p.body[i] == body);
-            own.map(|i| p.mass[i] * p.velocity[i].z).sum()
+            own.map(|i| p.mass[i] * p.velocity.at(i).z).sum()
         };
         let now = tip - Vec3::Z * SPEED * s.time();
         let tally = s.contact_tallies()[0];
@@ -131,7 +131,7 @@ fn compute(tool: Tool, h: f64, friction: f64, gap_check: bool, base: bool) -> (O
         if s.time() >= last + 0.01 || s.finished() {
             last = s.time();
             let soil = (0..p.len()).filter(|&i| p.body[i] == 0);
-            let inside = soil.map(|i| tool.inside(p.position[i] - now));
+            let inside = soil.map(|i| tool.inside(p.position.at(i) - now));
             o.overlap = inside.fold(o.overlap, f64::max);
         }
         let [soil, own] = [0, 1].map(momentum);

@@ -110,7 +110,7 @@ fn compute(scene: &Scene, h: f64, smoothing: Smoothing) -> (Outcome, setup::Bala
         o.kept = (e.kinetic + e.elastic) / k0;
         o.energies.push((s.time(), e.kinetic / k0, e.elastic / k0));
         if s.finished() {
-            let centre = |b| mean(s, b, |i| p.velocity[i]).length_squared();
+            let centre = |b| mean(s, b, |i| p.velocity.at(i)).length_squared();
             o.centres = (centre(0) + centre(1)) / (2.0 * SPEED * SPEED);
         }
     });

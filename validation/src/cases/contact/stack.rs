@@ -96,7 +96,7 @@ fn compute(h: f64, surface: ContactSurface, rest: Rest) -> (Outcome, setup::Bala
             count += 1.0;
             o.deviation = o.deviation.max((reaction - 1.0).abs());
         }
-        let top = mean(s, 2, |i| p.displacement[i]);
+        let top = mean(s, 2, |i| p.displacement(i));
         o.moved = o.moved.max(top.length());
         if s.stage() == 1 {
             o.curve.push((s.stage_time(), top.z / h));

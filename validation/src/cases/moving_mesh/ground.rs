@@ -171,11 +171,11 @@ fn stress_errors(s: &Simulation) -> [f64; 2] {
     let p = s.particles();
     let mut sums = [[0.0; 2]; 2];
     for i in (0..p.len()).filter(|&i| p.body[i] == 0) {
-        let vertical = -UNIT_WEIGHT * (H - p.position[i].z);
-        for (sum, (own, exact)) in sums
-            .iter_mut()
-            .zip([(p.stress[i][2], vertical), (p.stress[i][0], K0 * vertical)])
-        {
+        let vertical = -UNIT_WEIGHT * (H - p.position.at(i).z);
+        for (sum, (own, exact)) in sums.iter_mut().zip([
+            (p.stress.at(i)[2], vertical),
+            (p.stress.at(i)[0], K0 * vertical),
+        ]) {
             sum[0] += (own - exact).powi(2);
             sum[1] += exact.powi(2);
         }

@@ -111,14 +111,14 @@ fn compute(plan: Plan, h: f64, window: f64) -> (Outcome, Balance) {
         let p = s.particles();
         let momentum = |body: u16| -> f64 {
             let own = (0..p.len()).filter(|&i| p.body[i] == body);
-            own.map(|i| p.mass[i] * p.velocity[i].z).sum()
+            own.map(|i| p.mass[i] * p.velocity.at(i).z).sum()
         };
         let tally = s.contact_tallies()[0];
         let push = (tally.normal + tally.tangential).z * s.time_step();
         sum = (sum.0 + push, sum.1 + s.time_step());
         if sum.1 * SPEED >= window {
             let punch = p.body.iter().position(|&b| b == 1).expect("it is there");
-            let way = -p.displacement[punch].z;
+            let way = -p.displacement(punch).z;
             o.force
                 .push((way - 0.5 * sum.1 * SPEED, 2.0 * sum.0 / sum.1 / h));
             sum = (0.0, 0.0);

@@ -59,7 +59,7 @@ mod paths;
 mod return_tests;
 
 pub use parameters::{MohrCoulombParameters, ParameterError};
-pub(super) use particle::{STATE_FIELDS, is_separated, solid_share};
+pub(super) use particle::{OPENING, STATE_FIELDS, is_separated, solid_share};
 
 use super::LinearElastic;
 use crate::Vec3;

@@ -24,11 +24,14 @@ pub(in super::super) const STATE_FIELDS: [StateField; 4] = [
     },
 ];
 
+/// The number of `opening` among them.
+pub(in super::super) const OPENING: usize = 2;
+
 /// Volume without opening over volume: the opening w is a logarithmic strain.
 #[inline]
 pub(in super::super) fn solid_share(state: &State) -> f64 {
-    if state[2] > 0.0 {
-        libm::exp(-state[2])
+    if state[OPENING] > 0.0 {
+        libm::exp(-state[OPENING])
     } else {
         1.0
     }
@@ -37,7 +40,7 @@ pub(in super::super) fn solid_share(state: &State) -> f64 {
 /// Opened, and not compressed again.
 #[inline]
 pub(in super::super) fn is_separated(stress: &Voigt, state: &State) -> bool {
-    state[2] > 0.0 && crate::tensor::trace(stress) >= 0.0
+    state[OPENING] > 0.0 && crate::tensor::trace(stress) >= 0.0
 }
 
 impl MohrCoulomb {

@@ -28,13 +28,20 @@ impl Mesh {
     /// Barycentric coordinates of `x` in element `e`; they are the shape functions there.
     #[inline]
     pub fn barycentric(&self, e: usize, x: Vec3) -> [f64; 4] {
-        barycentric(self.nodes[self.tets[e][0] as usize], &self.gradients[e], x)
+        let corners = self.corners(e);
+        barycentric(corners[0], &tetrahedron_gradients(corners).0, x)
+    }
+
+    /// Gradients of N₁, N₂, N₃ in element `e`, 1/m.
+    #[inline]
+    pub fn gradients(&self, e: usize) -> [Vec3; 3] {
+        tetrahedron_gradients(self.corners(e)).0
     }
 
     /// Gradients of all four shape functions of element `e`, 1/m.
     #[inline]
     pub fn all_gradients(&self, e: usize) -> [Vec3; 4] {
-        let [b, c, d] = self.gradients[e];
+        let [b, c, d] = self.gradients(e);
         [-(b + c + d), b, c, d]
     }
 
@@ -48,16 +55,17 @@ impl Mesh {
         self.corners(e).iter().sum::<Vec3>() / 4.0
     }
 
-    /// Computes gradients, volumes and altitudes from the node coordinates, and the volumes
+    /// Computes volumes and altitudes from the node coordinates, and the volumes
     /// attached to nodes. To be called whenever nodes have moved.
     pub fn update_geometry(&mut self) {
         let (nodes, tets) = (&self.nodes, &self.tets);
-        (&mut self.gradients, &mut self.volumes, &mut self.altitudes)
+        (&mut self.volumes, &mut self.altitudes)
             .into_par_iter()
             .zip(tets)
             .with_min_len(1024)
-            .for_each(|((gradients, volume, altitude), tet)| {
-                (*gradients, *volume) = tetrahedron_gradients(tet.map(|n| nodes[n as usize]));
+            .for_each(|((volume, altitude), tet)| {
+                let gradients;
+                (gradients, *volume) = tetrahedron_gradients(tet.map(|n| nodes[n as usize]));
                 let first = -(gradients[0] + gradients[1] + gradients[2]);
                 let steepest = gradients
                     .iter()
@@ -71,10 +79,7 @@ impl Mesh {
             .with_min_len(1024)
             .for_each(|(n, sum)| {
                 let range = offsets[n] as usize..offsets[n + 1] as usize;
-                *sum = attached[range]
-                    .iter()
-                    .map(|&(e, _)| volumes[e as usize])
-                    .sum();
+                *sum = attached[range].iter().map(|at| volumes[at.owner()]).sum();
             });
     }
 }

@@ -39,6 +39,29 @@ pub struct Face {
     pub local: u8,
 }
 
+/// A corner of an element or of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Corner(u32);
+
+impl Corner {
+    pub(crate) fn new(owner: usize, local: usize) -> Corner {
+        debug_assert!(owner < 1 << 30 && local < 4);
+        Corner((owner << 2 | local) as u32)
+    }
+
+    /// Number of the element or cell.
+    #[inline(always)]
+    pub fn owner(self) -> usize {
+        (self.0 >> 2) as usize
+    }
+
+    /// Local number of the node in it.
+    #[inline(always)]
+    pub fn local(self) -> usize {
+        (self.0 & 3) as usize
+    }
+}
+
 /// A named set of elements.
 #[derive(Clone, Debug)]
 pub struct VolumeGroup {
@@ -73,8 +96,6 @@ pub struct Mesh {
     pub nodes: Vec<Vec3>,
     /// Nodes of each element, positively oriented.
     pub tets: Vec<[u32; 4]>,
-    /// Gradients of N₁, N₂, N₃ in each element, 1/m; ∇N₀ is minus their sum.
-    pub gradients: Vec<[Vec3; 3]>,
     /// Element volumes, m³.
     pub volumes: Vec<f64>,
     /// Shortest altitude of each element, m.
@@ -84,7 +105,7 @@ pub struct Mesh {
     /// Volume of all elements attached to each node, m³.
     pub node_volumes: Vec<f64>,
     node_offsets: Vec<u32>,
-    node_elements: Vec<(u32, u8)>,
+    node_elements: Vec<Corner>,
     pub volume_groups: Vec<VolumeGroup>,
     pub surfaces: Vec<Surface>,
 }
@@ -129,8 +150,8 @@ pub enum MeshError {
 }
 
 impl Mesh {
-    /// Elements attached to a node, each with the node's local number in it.
-    pub fn attached(&self, node: u32) -> &[(u32, u8)] {
+    /// Corners of elements at a node.
+    pub fn attached(&self, node: u32) -> &[Corner] {
         let node = node as usize;
         &self.node_elements[self.node_offsets[node] as usize..self.node_offsets[node + 1] as usize]
     }

@@ -1,7 +1,8 @@
 //! From bare elements to a connected mesh.
 
 use super::{
-    FACE_NODES, Face, Mesh, MeshError, NONE, RawMesh, Surface, VolumeGroup, tetrahedron_gradients,
+    Corner, FACE_NODES, Face, Mesh, MeshError, NONE, RawMesh, Surface, VolumeGroup,
+    tetrahedron_gradients,
 };
 use crate::Vec3;
 use rayon::prelude::*;
@@ -30,7 +31,6 @@ impl Mesh {
         let volume_groups = volumes(volume_groups, tets.len())?;
         let count = tets.len();
         let mut mesh = Mesh {
-            gradients: vec![[Vec3::ZERO; 3]; count],
             volumes: vec![0.0; count],
             altitudes: vec![0.0; count],
             node_volumes: vec![0.0; nodes.len()],
@@ -99,7 +99,8 @@ fn orient(nodes: &[Vec3], tets: &mut [[u32; 4]]) -> Result<(), MeshError> {
     Ok(())
 }
 
-fn node_to_elements(nodes: usize, tets: &[[u32; 4]]) -> (Vec<u32>, Vec<(u32, u8)>) {
+fn node_to_elements(nodes: usize, tets: &[[u32; 4]]) -> (Vec<u32>, Vec<Corner>) {
+    assert!(tets.len() < 1 << 30, "corners have 30 bits for elements");
     let mut offsets = vec![0u32; nodes + 1];
     for &n in tets.iter().flatten() {
         offsets[n as usize + 1] += 1;
@@ -108,10 +109,10 @@ fn node_to_elements(nodes: usize, tets: &[[u32; 4]]) -> (Vec<u32>, Vec<(u32, u8)
         offsets[n + 1] += offsets[n];
     }
     let mut next = offsets.clone();
-    let mut attached = vec![(0, 0); tets.len() * 4];
+    let mut attached = vec![Corner::default(); tets.len() * 4];
     for (e, tet) in tets.iter().enumerate() {
         for (local, &n) in tet.iter().enumerate() {
-            attached[next[n as usize] as usize] = (e as u32, local as u8);
+            attached[next[n as usize] as usize] = Corner::new(e, local);
             next[n as usize] += 1;
         }
     }

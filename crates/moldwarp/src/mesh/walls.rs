@@ -50,11 +50,11 @@ impl Walls {
             self.tets = mesh.tets.clone();
         }
         let beyond = (mesh.nodes.len() + self.extra.len()) as u32;
-        for (&(e, local), &group) in mesh.attached(node).iter().zip(&groups) {
+        for (at, &group) in mesh.attached(node).iter().zip(&groups) {
             // The first group keeps the node's number.
             let grid = if group == 0 { node } else { beyond + group - 1 };
-            self.tets[e as usize][local as usize] = grid;
-            self.around.push((grid, e));
+            self.tets[at.owner()][at.local()] = grid;
+            self.around.push((grid, at.owner() as u32));
         }
         let more = groups.iter().copied().max().unwrap_or(0);
         self.extra.extend((0..more).map(|_| node));
@@ -103,7 +103,10 @@ impl Walls {
             [] => mesh.attached(grid),
             _ => &[],
         };
-        split.iter().map(|a| a.1).chain(whole.iter().map(|a| a.0))
+        split
+            .iter()
+            .map(|a| a.1)
+            .chain(whole.iter().map(|at| at.owner() as u32))
     }
 
     /// The grid node with each element around it if it is part of a split node, else nothing.
@@ -125,12 +128,12 @@ fn groups(mesh: &Mesh, node: u32, blocked: &[[bool; 4]]) -> Vec<u32> {
         groups[start] = next;
         let mut waiting = vec![start];
         while let Some(k) = waiting.pop() {
-            let (e, own) = around[k];
+            let (e, own) = (around[k].owner(), around[k].local());
             // Faces at the node are those opposite the others.
-            for local in (0..4).filter(|&l| l != usize::from(own)) {
-                let across = mesh.neighbours[e as usize][local];
-                let other = around.iter().position(|a| a.0 == across);
-                let other = other.filter(|&o| groups[o] == NEW && !blocked[e as usize][local]);
+            for local in (0..4).filter(|&l| l != own) {
+                let across = mesh.neighbours[e][local];
+                let other = around.iter().position(|a| a.owner() as u32 == across);
+                let other = other.filter(|&o| groups[o] == NEW && !blocked[e][local]);
                 if let Some(other) = other {
                     groups[other] = next;
                     waiting.push(other);

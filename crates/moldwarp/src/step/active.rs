@@ -9,7 +9,7 @@
 
 use crate::contact::Fields;
 use crate::lanes::{LANES, Pile, Tiles};
-use crate::mesh::{Mesh, NONE, Walls};
+use crate::mesh::{Corner, Mesh, NONE, Walls};
 use crate::particles::Order;
 use std::ops::Range;
 
@@ -58,28 +58,6 @@ struct Listed {
     first: u32,
     count: u32,
     field: u8,
-}
-
-/// A corner of a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Corner(u32);
-
-impl Corner {
-    fn new(cell: usize, local: usize) -> Corner {
-        Corner((cell << 2 | local) as u32)
-    }
-
-    /// Number of the cell.
-    #[inline(always)]
-    pub fn cell(self) -> usize {
-        (self.0 >> 2) as usize
-    }
-
-    /// Local number of the node in it.
-    #[inline(always)]
-    pub fn local(self) -> usize {
-        (self.0 & 3) as usize
-    }
 }
 
 impl Active {
@@ -304,7 +282,7 @@ mod tests {
         assert!(active.ranks(hole).is_empty());
         for slot in 0..active.nodes.len() {
             for corner in active.attached(slot) {
-                let own = active.cell_nodes[corner.cell()][corner.local()];
+                let own = active.cell_nodes[corner.owner()][corner.local()];
                 assert_eq!(own as usize, slot);
             }
         }

@@ -1,7 +1,6 @@
 //! Contact between bodies: after the equation of motion, and again after the remap (Jassim et al.
 //! Eq. 10–14; the impulses are in `contact/meeting.rs`).
 
-use super::active::Corner;
 use super::nodes::signs;
 use super::to_nodes::is_filled;
 use super::{Active, Node};
@@ -10,6 +9,7 @@ use crate::contact::{
     Ball, Contacts, Mass, Meeting, NORMALS, State, Strength, Tally, move_together, outermost,
     separate, solve,
 };
+use crate::mesh::Corner;
 use crate::parallel::fold;
 use crate::plan::ContactSurface;
 use crate::simulation::Simulation;
@@ -320,8 +320,8 @@ fn face_normals(
 fn volume_gradient(sim: &Simulation, slot: usize) -> Vec3 {
     let (active, mesh) = (&sim.active, &sim.plan.mesh);
     let gradient = |at: &Corner| {
-        let e = active.elements[at.cell()] as usize;
-        mesh.all_gradients(e)[at.local()] * sim.cells.volume(at.cell())
+        let e = active.elements[at.owner()] as usize;
+        mesh.all_gradients(e)[at.local()] * sim.cells.volume(at.owner())
     };
     active.attached(slot).iter().map(gradient).sum()
 }
@@ -342,7 +342,7 @@ fn touching_gap(sim: &Simulation, meeting: &Meeting) -> f64 {
     let cells = meeting.slots.map(|s| sim.active.attached(s as usize));
     let elements = cells.into_iter().flatten();
     let altitudes = elements.map(|a| {
-        let e = sim.active.elements[a.cell()];
+        let e = sim.active.elements[a.owner()];
         sim.plan.mesh.altitudes[e as usize]
     });
     TOUCHING * altitudes.fold(f64::INFINITY, f64::min)
@@ -356,7 +356,7 @@ fn balls<'a>(
 ) -> impl Iterator<Item = Ball> + use<'a> {
     let (active, particles) = (&sim.active, &sim.particles);
     let origin = sim.plan.mesh.nodes[active.nodes[slot] as usize];
-    let cells = active.attached(slot).iter().map(|at| at.cell());
+    let cells = active.attached(slot).iter().map(|at| at.owner());
     let inside = cells.flat_map(|c| sim.order.places(active.ranks(c)));
     inside.map(move |&p| {
         let p = p as usize;

@@ -1,11 +1,11 @@
 //! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
-use super::active::Corner;
 use super::{Active, BLOCK, Cells, Node, contact, rigid};
 use crate::boundary::AbsorbingNode;
 use crate::lanes::lane_of;
 use crate::measure::{DriftWork, Forces};
+use crate::mesh::Corner;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3};
@@ -110,7 +110,7 @@ fn internal_force(slot: usize, active: &Active, cells: &Cells) -> Vec3 {
 /// The mass whose weight pulls at a node where there is a reference stress, kg.
 fn weighed(slot: usize, active: &Active, cells: &Cells) -> f64 {
     let own = |at: &Corner| {
-        let (tile, l) = lane_of(at.cell());
+        let (tile, l) = lane_of(at.owner());
         cells.forces[tile].weighed[at.local()][l]
     };
     active.attached(slot).iter().map(own).sum()

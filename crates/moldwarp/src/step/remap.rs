@@ -56,7 +56,7 @@ fn average(sim: &mut Simulation) {
         for (slot, node) in slots.zip(nodes) {
             let mut momentum = Vec3::ZERO;
             for at in active.attached(slot) {
-                let (tile, l) = lane_of(at.cell());
+                let (tile, l) = lane_of(at.owner());
                 momentum += corner(&sums[tile].momentum, l, at.local());
             }
             node.average = if node.mass > 0.0 {

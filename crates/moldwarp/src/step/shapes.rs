@@ -46,7 +46,7 @@ impl Shapes {
             let e = e as usize;
             let origin = mesh.nodes[mesh.tets[e][0] as usize];
             set(&mut self.origin, l, origin.to_array());
-            for (i, g) in mesh.gradients[e].iter().enumerate() {
+            for (i, g) in mesh.gradients(e).iter().enumerate() {
                 for (k, g) in g.to_array().into_iter().enumerate() {
                     self.gradients[3 * i + k][l] = g;
                 }

@@ -68,7 +68,7 @@ fn sum_at_nodes(sim: &Simulation, means: &mut [f64], factor: f64) {
         for (slot, mean) in slots.zip(means) {
             let (mut sum, mut all) = (0.0, 0.0);
             for at in active.attached(slot) {
-                let (tile, l) = lane_of(at.cell());
+                let (tile, l) = lane_of(at.owner());
                 let [value, weight] = &weights[tile];
                 sum += value[l];
                 all += weight[l];

@@ -1,10 +1,10 @@
 //! What the step keeps per node and per cell.
 
-use super::active::Corner;
 use super::shapes::{Corners, NO_CORNERS, Shapes, corner};
 use super::{Active, TILES};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, VoigtLanes, lane_of};
+use crate::mesh::Corner;
 use crate::mesh::Mesh;
 use crate::parallel::fold;
 use std::ops::Range;
@@ -239,7 +239,7 @@ impl Cells {
     pub(super) fn at_node(&self, attached: &[Corner]) -> Vec3 {
         let mut sum = Vec3::ZERO;
         for at in attached {
-            let (tile, lane) = lane_of(at.cell());
+            let (tile, lane) = lane_of(at.owner());
             sum += corner(&self.corners[tile], lane, at.local());
         }
         sum

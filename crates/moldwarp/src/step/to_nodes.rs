@@ -55,7 +55,7 @@ fn sum_nodes(sim: &mut Simulation) {
         {
             let (mut mass, mut momentum, mut volume, mut all_mass) = (0.0, Vec3::ZERO, 0.0, 0.0);
             for at in active.attached(slot) {
-                let (tile, l) = lane_of(at.cell());
+                let (tile, l) = lane_of(at.owner());
                 let sum = &sums[tile];
                 mass += sum.mass[at.local()][l];
                 momentum += corner(&sum.momentum, l, at.local());

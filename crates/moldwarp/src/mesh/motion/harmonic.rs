@@ -15,12 +15,15 @@ pub(super) fn harmonic(
         return w;
     }
     let free = |n: usize| given[n].is_none();
+    let gradients: Vec<[Vec3; 4]> = (0..mesh.tets.len())
+        .map(|e| mesh.all_gradients(e))
+        .collect();
     // Residual −K w on the free nodes, and the diagonal of K as preconditioner.
-    let mut residual: Vec<f64> = stiffness_times(mesh, &w, &flux)
+    let mut residual: Vec<f64> = stiffness_times(mesh, &gradients, &w, &flux)
         .iter()
         .map(|r| -r)
         .collect();
-    let diagonal = stiffness_diagonal(mesh, &flux);
+    let diagonal = stiffness_diagonal(mesh, &gradients, &flux);
     let mask = |v: &mut Vec<f64>| (0..v.len()).filter(|&n| !free(n)).for_each(|n| v[n] = 0.0);
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     mask(&mut residual);
@@ -32,7 +35,7 @@ pub(super) fn harmonic(
         if rho <= target {
             break;
         }
-        let mut image = stiffness_times(mesh, &direction, &flux);
+        let mut image = stiffness_times(mesh, &gradients, &direction, &flux);
         mask(&mut image);
         let alpha = rho / dot(&direction, &image);
         for n in 0..w.len() {
@@ -49,10 +52,15 @@ pub(super) fn harmonic(
     w
 }
 
-fn stiffness_times(mesh: &Mesh, w: &[f64], flux: impl Fn(usize, Vec3) -> Vec3) -> Vec<f64> {
+fn stiffness_times(
+    mesh: &Mesh,
+    gradients: &[[Vec3; 4]],
+    w: &[f64],
+    flux: impl Fn(usize, Vec3) -> Vec3,
+) -> Vec<f64> {
     let mut out = vec![0.0; w.len()];
     for (e, tet) in mesh.tets.iter().enumerate() {
-        let gradients = mesh.all_gradients(e);
+        let gradients = &gradients[e];
         let slope: Vec3 = (0..4)
             .map(|i| gradients[i] * w[tet[i] as usize])
             .sum::<Vec3>();
@@ -64,10 +72,14 @@ fn stiffness_times(mesh: &Mesh, w: &[f64], flux: impl Fn(usize, Vec3) -> Vec3) -
     out
 }
 
-fn stiffness_diagonal(mesh: &Mesh, flux: impl Fn(usize, Vec3) -> Vec3) -> Vec<f64> {
+fn stiffness_diagonal(
+    mesh: &Mesh,
+    gradients: &[[Vec3; 4]],
+    flux: impl Fn(usize, Vec3) -> Vec3,
+) -> Vec<f64> {
     let mut out = vec![0.0; mesh.nodes.len()];
     for (e, tet) in mesh.tets.iter().enumerate() {
-        for (i, g) in mesh.all_gradients(e).iter().enumerate() {
+        for (i, g) in gradients[e].iter().enumerate() {
             out[tet[i] as usize] += g.dot(flux(e, *g));
         }
     }

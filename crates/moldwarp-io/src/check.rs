@@ -89,7 +89,7 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
     // The end of a stage is a frame of the particles with three more fields.
     let stage = frame_bytes(particles, 0, 0) + 24 * particles;
     let stages = (sim.plan().stages.len() * stage) as f64;
-    let disk = frames as f64 * frame + stages + (rows as usize * columns.len() * 20) as f64;
+    let disk = frames as f64 * frame + stages + rows as f64 * (columns.len() * 20) as f64;
     let (pace, stopped) = trial(&mut sim);
     Ok(Forecast {
         title,
@@ -123,7 +123,7 @@ fn steps(sim: &Simulation) -> u64 {
             } => (duration / sim.next_time_step()).ceil() as u64,
             Until::Steps(steps) => steps,
         })
-        .sum()
+        .fold(0, u64::saturating_add)
 }
 
 /// How often something is written in a run that ends at `end`, s: at 0, too.
@@ -131,7 +131,7 @@ fn outputs(every: Every, end: f64) -> u64 {
     match every {
         Every::Count(0) => 0,
         Every::Count(count) => u64::from(count) + 1,
-        Every::Interval(interval) => (end / interval).ceil() as u64 + 1,
+        Every::Interval(interval) => ((end / interval).ceil() as u64).saturating_add(1),
     }
 }
 

@@ -69,6 +69,11 @@ pub enum GmshProblem {
     NoSection { name: &'static str, command: String },
     #[error("`$Elements` comes before `$Nodes`; Gmsh writes the nodes first")]
     ElementsFirst,
+    #[error(
+        "`$Entities` comes after `$Elements`, whose groups it says; put it behind `$PhysicalNames`, as \
+         Gmsh does"
+    )]
+    EntitiesLast,
     #[error("the mesh is partitioned; mesh it again without `-part`: `{command}`")]
     Partitioned { command: String },
     #[error("nodes with parameters in MSH 2.2 cannot be read; convert them: `{command}`")]
@@ -123,6 +128,24 @@ pub enum GmshProblem {
     #[error("node {0} has a negative radius; draw the meridian on the side x ≥ 0 of the axis")]
     NegativeRadius(u64),
     #[error(
+        "the triangle of nodes {} has no area; mesh the geometry again",
+        list(nodes)
+    )]
+    FlatTriangle { nodes: Vec<u64> },
+    #[error(
+        "the triangles of nodes {} and {} overlap; if surfaces of the geometry overlap, cut them apart \
+         with `Coherence;` in the .geo",
+        list(first),
+        list(second)
+    )]
+    TrianglesOverlap { first: Vec<u64>, second: Vec<u64> },
+    #[error(
+        "curve `{curve}` has a line of nodes {} that is no edge of a triangle; Gmsh saves only surfaces \
+         that are in a Physical Surface, so check that the one beside this curve is",
+        list(nodes)
+    )]
+    NoEdge { curve: String, nodes: Vec<u64> },
+    #[error(
         "a triangle is in two physical surfaces, `{first}` and `{second}`; take it out of one of them"
     )]
     TwoAreas { first: String, second: String },
@@ -149,4 +172,19 @@ pub enum GmshProblem {
         second: u64,
         name: String,
     },
+    #[error(
+        "the physical group {tag} of dimension {dimension} is called both `{first}` and `{second}`; keep \
+         one of the names"
+    )]
+    TwoNamesOfOne {
+        dimension: i64,
+        tag: u64,
+        first: String,
+        second: String,
+    },
+}
+
+fn list(tags: &[u64]) -> String {
+    let tags: Vec<String> = tags.iter().map(u64::to_string).collect();
+    tags.join(", ")
 }

@@ -20,7 +20,9 @@ pub fn explain_mesh_error(error: &MeshError, node_tags: &[u64], element_tags: &[
         MeshError::Empty => error.to_string(),
         MeshError::NotFinite { node: n } => {
             let n = node(*n);
-            format!("node {n} has a coordinate that is not a finite number")
+            format!(
+                "node {n} has a coordinate that is not a finite number; check it and `mesh.unit`"
+            )
         }
         MeshError::NoSuchNode {
             element: e,
@@ -47,8 +49,15 @@ pub fn explain_mesh_error(error: &MeshError, node_tags: &[u64], element_tags: &[
             others,
         } => {
             let (e, others) = (element(*e), more(*others));
+            // Compared with its edges' cube, which may be beyond all numbers.
+            let remedy = match volume.abs() < 1e30 {
+                true => MESH_AGAIN,
+                false => {
+                    "its coordinates are too large to compute with: check them and `mesh.unit`"
+                }
+            };
             format!(
-                "element {e} is flat, its volume is {} m³{others}; {MESH_AGAIN}",
+                "element {e} is flat, its volume is {} m³{others}; {remedy}",
                 number(*volume)
             )
         }

@@ -4,10 +4,12 @@ mod error;
 mod explain;
 mod gmsh;
 mod missing;
+mod overlap;
 mod quality;
 
 pub use error::{GmshProblem, MeshFileError, Place};
 pub use explain::explain_mesh_error;
+pub use overlap::{Overlap, check_overlap};
 pub use quality::describe_quality;
 
 use moldwarp::mesh::{PlaneMesh, RawMesh};

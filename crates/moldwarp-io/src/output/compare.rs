@@ -23,6 +23,8 @@ impl Difference {
 pub enum CompareError {
     #[error("it has no rows")]
     Empty,
+    #[error("row {row} below its header holds a number that is not finite")]
+    NotFinite { row: usize },
     #[error("its times go back at {time} s")]
     NotOrdered { time: f64 },
     #[error("it is zero throughout, so that no difference can be related to its peak")]
@@ -73,6 +75,10 @@ pub fn reference_peak(reference: &[(f64, f64)]) -> Result<f64, CompareError> {
     if reference.is_empty() {
         return Err(CompareError::Empty);
     }
+    let finite = |r: &(f64, f64)| r.0.is_finite() && r.1.is_finite();
+    if let Some(row) = reference.iter().position(|r| !finite(r)) {
+        return Err(CompareError::NotFinite { row: row + 1 });
+    }
     if let Some(pair) = reference.windows(2).find(|w| w[0].0 > w[1].0) {
         return Err(CompareError::NotOrdered { time: pair[1].0 });
     }
@@ -120,6 +126,10 @@ mod tests {
         assert_eq!(
             difference(history(), &[(0.0, 0.0)]),
             Err(CompareError::Flat)
+        );
+        assert_eq!(
+            difference(history(), &[(0.0, 1.0), (1.0, f64::NAN)]),
+            Err(CompareError::NotFinite { row: 2 })
         );
         assert_eq!(
             difference(history(), &[(1.0, 1.0), (0.5, 1.0)]),

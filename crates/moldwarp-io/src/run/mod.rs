@@ -238,7 +238,7 @@ pub(crate) fn simulation(
     origin: &Origin,
     text: &str,
 ) -> Result<Simulation, SceneError> {
-    Simulation::new(plan).map_err(|error| origin.explain(&error, text))
+    Simulation::new(plan).map_err(|error| origin.explain(error, text))
 }
 
 /// The part of the summary that the simulation and its pace tell.

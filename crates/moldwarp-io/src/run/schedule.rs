@@ -23,7 +23,7 @@ impl Schedule {
         let reached = ((time / self.interval) * (1.0 + 1e-12) + 1e-9).floor() as u64;
         let due = reached >= self.next;
         if due {
-            self.next = reached + 1;
+            self.next = reached.saturating_add(1);
         }
         due
     }

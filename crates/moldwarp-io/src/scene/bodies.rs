@@ -276,7 +276,7 @@ fn refuse_others(kind: Kind, raw: &RawRegion) -> Result<(), Fault> {
             None => Ok(()),
             Some((key, span)) => Err(Fault::new("this region does not say its kind")
                 .at(span, format!("`{key}` does not belong to a box"))
-                .help("add kind = \"sphere\", \"cylinder\" or \"half-space\"; without it a region is a box")),
+                .help("add kind = \"sphere\", \"cylinder\", \"cone\" or \"half-space\"; without it a region is a box")),
         },
     }
 }

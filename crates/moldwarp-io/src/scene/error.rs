@@ -1,8 +1,10 @@
 //! What is wrong with a scene, where, and what to do about it.
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::error::Error;
 use std::fmt;
 use std::ops::Range;
+use std::panic::Location;
 
 /// A scene that cannot be computed. As a [`miette::Diagnostic`] it shows the place in the file
 /// and the remedy.
@@ -13,7 +15,11 @@ struct Content {
     source: Option<NamedSource<String>>,
     labels: Vec<LabeledSpan>,
     help: Option<String>,
+    cause: Option<Cause>,
+    raised: &'static Location<'static>,
 }
+
+type Cause = Box<dyn Error + Send + Sync>;
 
 /// The same before it is known which file it belongs to: what the checks return.
 #[derive(Debug)]
@@ -24,15 +30,21 @@ pub(crate) struct Fault {
     pub help: Option<String>,
     /// The key that was probably meant instead of the one at the first label.
     pub meant: Option<String>,
+    /// The error of another reader or of the solver that this one tells.
+    cause: Option<Cause>,
+    raised: &'static Location<'static>,
 }
 
 impl Fault {
+    #[track_caller]
     pub fn new(message: impl Into<String>) -> Fault {
         Fault {
             message: message.into(),
             labels: Vec::new(),
             help: None,
             meant: None,
+            cause: None,
+            raised: Location::caller(),
         }
     }
 
@@ -46,6 +58,11 @@ impl Fault {
         self
     }
 
+    pub fn caused_by(mut self, cause: impl Error + Send + Sync + 'static) -> Fault {
+        self.cause = Some(Box::new(cause));
+        self
+    }
+
     /// With the text its labels point into, called `name`.
     pub fn in_file(self, name: &str, text: &str) -> SceneError {
         let labels = self
@@ -54,22 +71,44 @@ impl Fault {
             .map(|(span, label)| LabeledSpan::new_with_span(Some(label), first_line(span, text)))
             .collect();
         SceneError(Box::new(Content {
-            message: self.message,
+            message: shortened(self.message),
             source: Some(NamedSource::new(name, text.to_owned())),
             labels,
             help: self.help,
+            cause: self.cause,
+            raised: self.raised,
         }))
     }
 
     /// Without a text: the file cannot be read.
     pub fn without_file(self) -> SceneError {
         SceneError(Box::new(Content {
-            message: self.message,
+            message: shortened(self.message),
             source: None,
             labels: Vec::new(),
             help: self.help,
+            cause: self.cause,
+            raised: self.raised,
         }))
     }
+}
+
+/// A word that is longer than any name or path is cut: it would bury the message.
+fn shortened(message: String) -> String {
+    const MOST: usize = 300;
+    if message.split(' ').all(|word| word.chars().count() <= MOST) {
+        return message;
+    }
+    let cut = |word: &str| match word.char_indices().nth(MOST) {
+        None => word.to_owned(),
+        Some(_) => {
+            let begin: String = word.chars().take(80).collect();
+            let quote = if begin.starts_with('`') { "`" } else { "" };
+            format!("{begin}…{quote}")
+        }
+    };
+    let words: Vec<String> = message.split(' ').map(cut).collect();
+    words.join(" ")
 }
 
 /// Underlines no more than a line: whole tables make poor labels.
@@ -78,6 +117,22 @@ fn first_line(span: Range<usize>, text: &str) -> Range<usize> {
     let end = span.end.clamp(start, text.len());
     let line = text.get(start..end).and_then(|s| s.find('\n'));
     start..line.map_or(end, |n| start + n)
+}
+
+impl SceneError {
+    /// The error of a mesh file, of a generator or of the solver that this one tells in the scene's
+    /// words, to be asked for its type. It is no [`source`](Error::source): the message already says
+    /// all that it does.
+    pub fn cause(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {
+        self.0.cause.as_deref()
+    }
+
+    /// Where in the reader's code the message is worded, by which the tests know that each message
+    /// has its example.
+    #[doc(hidden)]
+    pub fn raised(&self) -> &'static Location<'static> {
+        self.0.raised
+    }
 }
 
 impl fmt::Display for SceneError {
@@ -96,7 +151,7 @@ impl fmt::Debug for SceneError {
     }
 }
 
-impl std::error::Error for SceneError {}
+impl Error for SceneError {}
 
 impl Diagnostic for SceneError {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {

@@ -124,7 +124,9 @@ fn mohr_coulomb(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
         } else {
             "`tension_cutoff` is missing"
         };
-        Fault::new(error.to_string()).at(place.unwrap_or(name.span()), label)
+        Fault::new(error.to_string())
+            .at(place.unwrap_or(name.span()), label)
+            .caused_by(error)
     })
 }
 

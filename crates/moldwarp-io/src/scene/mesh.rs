@@ -6,7 +6,7 @@ use super::error::Fault;
 use super::quantity::{self, Dimension};
 use super::raw::{RawBox, RawMesh, RawRevolve, Text};
 use super::values::{exactly_one, positive, span, three, vector};
-use crate::mesh::{MeshFileError, explain_mesh_error, read_gmsh, read_plane_gmsh};
+use crate::mesh::{MeshFileError, check_overlap, explain_mesh_error, read_gmsh, read_plane_gmsh};
 use moldwarp::Mesh;
 use moldwarp::mesh::box_mesh;
 use std::path::Path;
@@ -78,7 +78,13 @@ fn generated(cuboid: &Spanned<RawBox>) -> Result<Mesh, Fault> {
             .at(raw.cells.span(), format!("more than {MOST_CELLS}"))
             .help("each cell becomes six elements; take fewer"));
     }
-    box_mesh(size, cells).map_err(|e| damaged(&e.to_string(), cuboid.span()))
+    box_mesh(size, cells).map_err(|error| {
+        Fault::new("the box's cells are too small or too large to compute their volumes")
+            .at(raw.size.span(), "are the units right?")
+            .at(raw.cells.span(), "over so many cells")
+            .help("write the unit in each length, as in size = [\"1 m\", \"1 m\", \"20 cm\"]")
+            .caused_by(error)
+    })
 }
 
 fn from_file(
@@ -95,7 +101,10 @@ fn from_file(
     notes.append(&mut read.notes);
     let mesh = Mesh::new(read.raw).map_err(|e| {
         let message = explain_mesh_error(&e, &read.node_tags, &read.element_tags);
-        damaged(&format!("{}: {message}", path.display()), file.span())
+        damaged(&format!("{}: {message}", path.display()), file.span()).caused_by(e)
+    })?;
+    check_overlap(&mesh, &read.element_tags).map_err(|overlap| {
+        damaged(&format!("{}: {overlap}", path.display()), file.span()).caused_by(overlap)
     })?;
     Ok((mesh, read.element_tags))
 }
@@ -150,25 +159,26 @@ fn revolved(
     let element_tags: Vec<u64> = (1..=revolved.raw.tets.len() as u64).collect();
     let mesh = Mesh::new(revolved.raw).map_err(|e| {
         let message = explain_mesh_error(&e, &node_tags, &element_tags);
-        damaged(&format!("{}: {message}", path.display()), file.span())
+        damaged(&format!("{}: {message}", path.display()), file.span()).caused_by(e)
     })?;
     Ok((mesh, Vec::new()))
 }
 
 fn length_unit(unit: &Text) -> Result<f64, Fault> {
-    quantity::parse(&format!("1 {}", unit.get_ref()), Dimension::Length).map_err(|_| {
+    quantity::parse(&format!("1 {}", unit.get_ref()), Dimension::Length).map_err(|error| {
         Fault::new(format!("`{}` is not a unit of length", unit.get_ref()))
             .at(unit.span(), "should be m, cm or mm")
             .help("unit = \"mm\" if the mesh was drawn in millimetres")
+            .caused_by(error)
     })
 }
 
 /// The mesh file cannot be read: where it is named, and what its reader advises.
 fn unreadable(error: MeshFileError, file: &Text, path: &Path) -> Fault {
-    match error {
+    let fault = match &error {
         MeshFileError::Missing { advice, .. } => {
             let help = match path.with_extension("geo").is_file() {
-                true => advice,
+                true => advice.clone(),
                 false => format!("paths are relative to the scene's folder; {advice}"),
             };
             Fault::new(format!("there is no mesh file `{}`", file.get_ref()))
@@ -176,11 +186,19 @@ fn unreadable(error: MeshFileError, file: &Text, path: &Path) -> Fault {
                 .help(help)
         }
         other => damaged(&other.to_string(), file.span()),
-    }
+    };
+    let fault = match (&fault.help, &error) {
+        (None, MeshFileError::At { .. } | MeshFileError::Whole { .. }) => fault.help(
+            "Gmsh writes no such file: it is cut short, or was changed; copy it again, or mesh the \
+             geometry again",
+        ),
+        _ => fault,
+    };
+    fault.caused_by(error)
 }
 
 /// Messages on meshes say what is wrong and, after a semicolon, what to do.
-pub(super) fn damaged(message: &str, place: std::ops::Range<usize>) -> Fault {
+fn damaged(message: &str, place: std::ops::Range<usize>) -> Fault {
     match message.split_once("; ") {
         Some((problem, remedy)) => Fault::new(problem).at(place, "this mesh").help(remedy),
         None => Fault::new(message).at(place, "this mesh"),

@@ -19,6 +19,7 @@ mod materials;
 mod mesh;
 mod mesh_motion;
 mod numerics;
+mod origin;
 mod output;
 mod overrides;
 mod presence;
@@ -39,19 +40,17 @@ mod values;
 pub use earlier::{Earlier, inherit};
 pub(crate) use error::Fault;
 pub use error::SceneError;
+pub(crate) use origin::Origin;
 pub use output::{Compare, Every, OutputSettings};
 pub(crate) use overrides::{keys, no_path, value};
+pub use quantity::{Dimension, QuantityError, parse as parse_quantity};
 
 #[cfg(test)]
 pub(crate) use {quantity::dimensions, unsupported::later};
 
-use moldwarp::particles::SeedingError;
-use moldwarp::step::TimeStepError;
-use moldwarp::{Particles, Plan, SetupError};
+use moldwarp::{Particles, Plan};
 use presence::Presence;
-use quantity::Dimension;
 use raw::RawScene;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A scene, read and checked.
@@ -79,100 +78,6 @@ pub struct Scene {
     pub travel: Option<f64>,
     /// For messages that come up later.
     pub(crate) origin: Origin,
-}
-
-/// Where a scene came from.
-#[derive(Debug, Default)]
-pub(crate) struct Origin {
-    /// Its name in messages.
-    name: String,
-    overrides: Vec<overrides::Override>,
-    time_step: Option<Range<usize>>,
-    initial_stress: Option<Range<usize>>,
-    mesh_motion: Option<Range<usize>>,
-    /// Names of bodies and where they stand.
-    bodies: Vec<(String, Range<usize>)>,
-    /// The same of probes.
-    probes: Vec<(String, Range<usize>)>,
-    /// Names of contacts and where their `surface` stands.
-    surfaces: Vec<(String, Range<usize>)>,
-}
-
-impl Origin {
-    /// What the solver found when it set up the scene, shown in the scene's `text` where it has a
-    /// place there.
-    pub(crate) fn explain(&self, error: &SetupError, text: &str) -> SceneError {
-        let fault = match (error, &self.time_step) {
-            (SetupError::TimeStep(TimeStepError::AboveStable { .. }), Some(place)) => {
-                above_stable(error, place)
-            }
-            (SetupError::InitialStress(error), _) => {
-                initial_stress::explain(error, self.initial_stress.clone().unwrap_or_default())
-            }
-            (SetupError::Seeding(SeedingError::Overlap { first, second, .. }), _) => {
-                self.overlap(first, second)
-            }
-            (SetupError::Motion(error), _) => mesh_motion::explain(error, self.mesh_motion.clone()),
-            (SetupError::Inherited(error), _) => earlier::explain(error),
-            (SetupError::Contact(error), _) => contacts::explain(error, &self.surfaces)
-                .unwrap_or_else(|| Fault::new(error.to_string())),
-            (SetupError::NoInitialStress { body, .. }, _) => {
-                Fault::new(error.to_string()).help(format!(
-                    "give `{body}` its `k0` and the scene [initial_stress], or the load a pressure"
-                ))
-            }
-            (SetupError::ProbeOfChange { probe, .. } | SetupError::ProbeOfNothing { probe }, _) => {
-                self.lost(error, probe)
-            }
-            (SetupError::NoContact { probe }, _) => {
-                let fault = Fault::new(error.to_string()).help(
-                    "name a surface of the first body of an aligned contact; the whole force is in the \
-                     columns contact.<name>",
-                );
-                let places = self.probes.iter().filter(|p| p.0 == *probe);
-                places.fold(fault, |fault, (_, place)| {
-                    fault.at(place.clone(), "this probe")
-                })
-            }
-            _ => Fault::new(error.to_string()),
-        };
-        overrides::blame(fault, text, &self.overrides).in_file(&self.name, text)
-    }
-
-    /// A probe without its particles.
-    fn lost(&self, error: &SetupError, probe: &str) -> Fault {
-        let text = error.to_string();
-        let problem = text.split_once(": ").map_or(&*text, |parts| parts.0);
-        let fault = Fault::new(problem).help(
-            "put the probe where a body is in all stages, or on a surface with a boundary, whose nodes \
-             stay",
-        );
-        let places = self.probes.iter().filter(|p| p.0 == probe);
-        places.fold(fault, |fault, (_, place)| {
-            fault.at(place.clone(), "has nothing to look at in some stage")
-        })
-    }
-
-    fn overlap(&self, first: &str, second: &str) -> Fault {
-        let fault = Fault::new(format!("bodies `{first}` and `{second}` overlap"))
-            .help("a place can hold one body only: shrink or move the region of one of them");
-        let places = self.bodies.iter().filter(|b| b.0 == first || b.0 == second);
-        places.fold(fault, |fault, (_, place)| {
-            fault.at(place.clone(), "shares elements with the other")
-        })
-    }
-}
-
-fn above_stable(error: &SetupError, place: &Range<usize>) -> Fault {
-    let text = error.to_string();
-    let problem = text.split_once(": ").map_or(&*text, |parts| parts.0);
-    Fault::new(problem)
-        .at(place.clone(), "above the stable step")
-        .help(
-            "leave `time_step` out, and the step follows the stable one; `max_time_step` only \
-             bounds it; a forced step has to stay below the stable one, which shrinks as elements \
-             are compressed",
-        )
 }
 
 /// Reads a scene from a file, or from scene.toml in a folder.
@@ -203,7 +108,8 @@ pub fn load_varied(path: &Path, sets: &[String], varied: &[String]) -> Result<Sc
     if file.is_file() && file.extension().is_some_and(|e| e == "msh" || e == "geo") {
         return Err(not_a_scene(&file));
     }
-    let original = std::fs::read_to_string(&file).map_err(|e| unreadable(&name, path, &e))?;
+    let original = regular_bytes(&file).map_err(|e| unreadable(&name, path, &e))?;
+    let original = String::from_utf8(original).map_err(|e| no_text(&name, &e))?;
     let (text, overrides) = overrides::apply(&original, sets, varied)
         .map_err(|fault| fault.in_file(&name, &original))?;
     name += match (sets.is_empty(), varied.is_empty()) {
@@ -212,19 +118,54 @@ pub fn load_varied(path: &Path, sets: &[String], varied: &[String]) -> Result<Sc
         (true, false) => " with --vary",
         (false, false) => " with --set and --vary",
     };
+    read(&file, name, &text, overrides)
+}
+
+/// Reads a scene from memory; `file` is its name, and paths are relative to its folder.
+///
+/// # Errors
+///
+/// As for [`load`].
+pub fn parse(file: &Path, text: &str) -> Result<Scene, SceneError> {
+    read(file, file.display().to_string(), text, Vec::new())
+}
+
+fn read(
+    file: &Path,
+    name: String,
+    text: &str,
+    overrides: Vec<overrides::Override>,
+) -> Result<Scene, SceneError> {
     let folder = match file.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),
     };
-    let read = syntax::parse(&text).and_then(|raw| check(&raw, &file, folder, &text));
-    match read {
+    match syntax::parse(text).and_then(|raw| check(&raw, file, folder, text)) {
         Ok(mut scene) => {
             scene.origin.name = name;
             scene.origin.overrides = overrides;
             Ok(scene)
         }
-        Err(fault) => Err(overrides::blame(fault, &text, &overrides).in_file(&name, &text)),
+        Err(fault) => Err(overrides::blame(fault, text, &overrides).in_file(&name, text)),
     }
+}
+
+/// A regular file; a pipe or a device may have no end.
+fn regular_bytes(file: &Path) -> std::io::Result<Vec<u8>> {
+    match std::fs::metadata(file)?.is_file() {
+        true => std::fs::read(file),
+        false => Err(std::io::Error::other("it is not a regular file")),
+    }
+}
+
+fn no_text(name: &str, error: &std::string::FromUtf8Error) -> SceneError {
+    let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+    let line = 1 + good.iter().filter(|&&b| b == b'\n').count();
+    Fault::new(format!(
+        "the scene `{name}` is not in UTF-8, first in line {line}"
+    ))
+    .help(format!("save it as UTF-8 in an editor; {WHAT_A_SCENE_IS}"))
+    .without_file()
 }
 
 const WHAT_A_SCENE_IS: &str = "a scene is a TOML file, or a folder that holds scene.toml";

@@ -5,7 +5,7 @@ use super::units::{self, Exponents};
 
 /// What kind of quantity is expected somewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Dimension {
+pub enum Dimension {
     Number,
     Length,
     Time,
@@ -69,11 +69,54 @@ const DIMENSIONS: [(Dimension, &str, Exponents, &str, &str); 12] = {
     ]
 };
 
-/// What is wrong with a quantity, and the remedy.
-#[derive(Debug, PartialEq)]
-pub(super) struct Unfit {
-    pub message: String,
-    pub help: String,
+/// What is wrong with a quantity.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum QuantityError {
+    #[error("expected {}, found the text \"{text}\"", .expected.name())]
+    NotANumber { text: String, expected: Dimension },
+    #[error("\"{text}\" has no unit")]
+    NoUnit { text: String, expected: Dimension },
+    #[error("`{part}` is not a unit")]
+    NotAUnit { part: String, expected: Dimension },
+    /// Decimals behind a comma, or thousands before it.
+    #[error("\"{text}\" has a comma")]
+    Comma { text: String, expected: Dimension },
+    #[error("a sign has no unit behind it")]
+    SignWithoutUnit { expected: Dimension },
+    #[error("expected {}, found {found} (\"{text}\")", .expected.name())]
+    WrongDimension {
+        text: String,
+        /// With its article: "a length".
+        found: String,
+        expected: Dimension,
+    },
+    #[error("\"{text}\" is too large")]
+    TooLarge { text: String, expected: Dimension },
+}
+
+impl QuantityError {
+    /// What to write instead.
+    pub fn help(&self) -> String {
+        match self {
+            QuantityError::NotANumber { expected, .. }
+            | QuantityError::NoUnit { expected, .. }
+            | QuantityError::SignWithoutUnit { expected }
+            | QuantityError::WrongDimension { expected, .. }
+            | QuantityError::TooLarge { expected, .. } => expected.example(),
+            QuantityError::Comma { expected, .. } => format!(
+                "decimals stand behind a point, as in 1.5, and thousands are not parted; {}",
+                expected.example()
+            ),
+            QuantityError::NotAUnit { part, expected } => {
+                let letters = part.trim_end_matches(|c: char| !c.is_alphabetic());
+                let near = suggest::nearest(letters, units::names());
+                match near.filter(|_| !letters.is_empty()) {
+                    Some(near) => format!("did you mean `{near}`? {}", expected.example()),
+                    None => expected.example(),
+                }
+            }
+        }
+    }
 }
 
 impl Dimension {
@@ -130,52 +173,40 @@ pub(crate) fn dimensions() -> impl Iterator<Item = Described> {
 }
 
 /// The number in SI units.
-pub(super) fn parse(text: &str, expected: Dimension) -> Result<f64, Unfit> {
-    let unfit = |message: String| Unfit {
-        message,
-        help: expected.example(),
+///
+/// # Errors
+///
+/// A text that is no number, or has another unit than one of `expected`.
+pub fn parse(text: &str, expected: Dimension) -> Result<f64, QuantityError> {
+    use QuantityError::*;
+    let written = text.trim();
+    let text = written.to_owned();
+    let Some((number, unit)) = leading_number(written) else {
+        return Err(NotANumber { text, expected });
     };
-    let text = text.trim();
-    let (number, unit) = leading_number(text).ok_or_else(|| {
-        unfit(format!(
-            "expected {}, found the text \"{text}\"",
-            expected.name()
-        ))
-    })?;
     if unit.is_empty() && expected != Dimension::Number {
-        return Err(unfit(format!("\"{text}\" has no unit")));
+        return Err(NoUnit { text, expected });
     }
-    let (factor, exponents) = units::parse(unit).map_err(|part| unknown_unit(part, expected))?;
+    if unit.starts_with(',') {
+        return Err(Comma { text, expected });
+    }
+    let (factor, exponents) = units::parse(unit).map_err(|part| match part {
+        "" => SignWithoutUnit { expected },
+        part => NotAUnit {
+            part: part.to_owned(),
+            expected,
+        },
+    })?;
     if exponents != expected.row().2 {
-        return Err(unfit(format!(
-            "expected {}, found {} (\"{text}\")",
-            expected.name(),
-            describe(exponents)
-        )));
+        return Err(WrongDimension {
+            text,
+            found: describe(exponents),
+            expected,
+        });
     }
-    let value = factor.apply(number);
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(unfit(format!("\"{text}\" is too large")))
-    }
-}
-
-fn unknown_unit(part: &str, expected: Dimension) -> Unfit {
-    if part.is_empty() {
-        return Unfit {
-            message: "a sign has no unit behind it".to_owned(),
-            help: expected.example(),
-        };
-    }
-    let letters = part.trim_end_matches(|c: char| !c.is_alphabetic());
-    let help = match suggest::nearest(letters, units::names()) {
-        Some(near) if !letters.is_empty() => format!("did you mean `{near}`? "),
-        _ => String::new(),
-    };
-    Unfit {
-        message: format!("`{part}` is not a unit"),
-        help: help + &expected.example(),
+    match factor.apply(number) {
+        value if value.is_finite() => Ok(value),
+        _ => Err(TooLarge { text, expected }),
     }
 }
 
@@ -289,13 +320,14 @@ mod tests {
             ("1e400 kPa", "\"1e400 kPa\" is too large"),
             ("inf kPa", "expected a stress, found the text \"inf kPa\""),
             ("2 kPa/", "a sign has no unit behind it"),
+            ("1,5 kPa", "\"1,5 kPa\" has a comma"),
         ] {
-            assert_eq!(parse(text, Stress).unwrap_err().message, message);
+            assert_eq!(parse(text, Stress).unwrap_err().to_string(), message);
         }
         assert!(
             parse("2 kpa", Stress)
                 .unwrap_err()
-                .help
+                .help()
                 .starts_with("did you mean `kPa`?")
         );
     }

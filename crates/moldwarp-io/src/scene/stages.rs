@@ -10,6 +10,7 @@ use super::values::{
     amount, amount_at, choose, count, damping, exactly_one, find, placed, positive, required, span,
     vector,
 };
+use crate::text;
 use moldwarp::plan::{
     Body, Boundary, Equilibrium, Item, Level, Load, NamedMaterial, Ramp, Stage, Until,
 };
@@ -91,7 +92,14 @@ fn stage(
                 material.get_ref(),
                 body.get_ref()
             ))
-            .at(material.span(), format!("{after} kg/m³, not {before}"))
+            .at(
+                material.span(),
+                format!(
+                    "{} kg/m³, not {}",
+                    text::number(after),
+                    text::number(before)
+                ),
+            )
             .help("give both materials the same density or unit weight"));
         }
         materials.push((place, other));

@@ -42,7 +42,7 @@ pub(super) fn symmetry(
             Symmetry::half(mesh, axis)
         }
     };
-    let symmetry = symmetry.map_err(|e| explain(&e, raw, place))?;
+    let symmetry = symmetry.map_err(|e| explain(&e, raw, place).caused_by(e))?;
     allowed("gravity", gravity, scene.gravity.span(), Some(&symmetry))?;
     notes.push(meaning(&symmetry));
     Ok(Some(symmetry))

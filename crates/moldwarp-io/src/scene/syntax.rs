@@ -32,11 +32,14 @@ pub(super) fn table(text: &str) -> Result<DeTable<'_>, Fault> {
 }
 
 fn not_toml(error: &toml::de::Error, text: &str) -> Fault {
+    let said = error.message();
+    let deep = said.contains("recursion") || said.contains("recurse");
+    let said = if deep { "nested too deeply" } else { said };
     let Some(span) = error.span() else {
-        return Fault::new("the scene is not valid TOML").help(error.message());
+        return Fault::new("the scene is not valid TOML").help(said);
     };
     let there = text.get(span.clone()).unwrap_or_default();
-    if error.message() == "duplicate key" {
+    if said == "duplicate key" {
         return Fault::new(format!("`{there}` is given twice"))
             .at(span, "for the second time")
             .help("keep one of the two; what belongs to one table stands under one header");
@@ -47,11 +50,18 @@ fn not_toml(error: &toml::de::Error, text: &str) -> Fault {
         Some(before) if nothing_follows && before.trim_end_matches([' ', '\t']).ends_with('=') => {
             "a value is missing"
         }
-        _ => error.message(),
+        Some(before) if rest.is_some_and(|r| r.starts_with(',')) && ends_in_digit(before) => {
+            "decimals stand behind a point, as in 0.5"
+        }
+        _ => said,
     };
     Fault::new("the scene is not valid TOML")
         .at(span, label)
         .help("TOML is `key = value` under `[table]` headers; texts stand in double quotes")
+}
+
+fn ends_in_digit(text: &str) -> bool {
+    text.ends_with(|c: char| c.is_ascii_digit())
 }
 
 fn check_version(table: &DeTable) -> Result<(), Fault> {
@@ -82,7 +92,13 @@ fn explain(error: &toml::de::Error) -> Fault {
         let fault = Fault::new(format!("`{key}` is missing"));
         (fault.help(example(key)), format!("needs `{key}`"))
     } else if let Some((found, expected)) = expectation(message) {
+        let (expected, found) = (wanted(expected), given(found));
         let fault = Fault::new(format!("expected {expected}, found {found}"));
+        let fault = match expected {
+            LIST if found == TABLE => fault.help("the header of an item of a list is [[…]]"),
+            NAMES => fault.help("for example:\n[bodies.layer]\nvolume = \"soil\""),
+            _ => fault,
+        };
         (fault, "of the wrong kind".to_owned())
     } else {
         (Fault::new(message), "here".to_owned())
@@ -97,6 +113,44 @@ fn expectation(message: &str) -> Option<(&str, &str)> {
     message
         .strip_prefix("invalid type: ")?
         .split_once(", expected ")
+}
+
+const LIST: &str = "a list";
+const TABLE: &str = "a table";
+/// As [`Named`](super::amount::Named) says it.
+const NAMES: &str = "a table with a name for each entry";
+
+/// What serde expects, in the words of TOML.
+fn wanted(expected: &str) -> &str {
+    match expected {
+        "i64" => "a whole number",
+        "a boolean" => "true or false",
+        "a string" => "a text in double quotes",
+        "a sequence" => LIST,
+        other if other.starts_with("struct ") => TABLE,
+        other => other,
+    }
+}
+
+/// What serde found, in the words of TOML.
+fn given(found: &str) -> String {
+    let value = || found.split_once(' ').map_or("", |words| words.1);
+    match found {
+        "sequence" => LIST.to_owned(),
+        "map" => TABLE.to_owned(),
+        _ if found.ends_with(" as i128") || found.ends_with(" as u128") => {
+            format!(
+                "{}, which is too large",
+                value().split(' ').next().unwrap_or("")
+            )
+        }
+        _ if found.starts_with("integer ") => format!("the number {}", value()),
+        _ if found.starts_with("floating point ") => {
+            format!("the number {}", value().trim_start_matches("point "))
+        }
+        _ if found.starts_with("string ") => format!("the text {}", value()),
+        other => other.to_owned(),
+    }
 }
 
 fn unknown_key(key: &str, expected: &[&str], error: &toml::de::Error) -> Fault {

@@ -25,10 +25,11 @@ pub(super) fn amount_at(
         Amount::Number(n) => Err(Fault::new(format!("`{key}` must be finite"))
             .at(span, format!("is {n}"))
             .help(dimension.example())),
-        Amount::Text(text) => quantity::parse(text, dimension).map_err(|unfit| {
-            Fault::new(format!("`{key}`: {}", unfit.message))
+        Amount::Text(text) => quantity::parse(text, dimension).map_err(|error| {
+            Fault::new(format!("`{key}`: {error}"))
                 .at(span, format!("should be {}", dimension.name()))
-                .help(unfit.help)
+                .help(error.help())
+                .caused_by(error)
         }),
     }
 }
@@ -52,7 +53,10 @@ pub(super) fn not_negative(key: &str, raw: &RawAmount, dimension: Dimension) -> 
     }
     Err(Fault::new(format!("`{key}` must not be negative"))
         .at(raw.span(), "negative")
-        .help("0 switches it off"))
+        .help(match dimension {
+            Dimension::Length => dimension.example(),
+            _ => "0 switches it off".to_owned(),
+        }))
 }
 
 /// A local damping factor, in [0, 1).

@@ -80,7 +80,7 @@ fn a_wrong_header_is_refused() {
     assert_eq!(
         refusal("solid cube\nfacet"),
         "mesh.msh, line 1: a Gmsh mesh begins with `$MeshFormat`, this with \
-         `solid cube`"
+         `solid cube`; mesh the geometry again, or name the mesh that Gmsh wrote"
     );
     assert_eq!(
         v22("2.2 0 8", "2.2 0 4"),

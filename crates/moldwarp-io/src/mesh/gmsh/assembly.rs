@@ -1,10 +1,10 @@
 //! Nodes, elements and groups as they come out of a file, put together to a mesh.
 
-use super::super::{GmshProblem, MeshFile, PlaneFile};
+use super::super::{GmshProblem, MeshFile};
 use super::Result;
 use super::cursor::Cursor;
 use moldwarp::Vec3;
-use moldwarp::mesh::{PlaneMesh, RawMesh};
+use moldwarp::mesh::RawMesh;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -12,21 +12,23 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 #[derive(Default)]
 pub(super) struct Assembly {
     numbers: HashMap<u64, u32>,
-    node_tags: Vec<u64>,
-    nodes: Vec<Vec3>,
-    tets: Vec<[u32; 4]>,
+    pub(super) node_tags: Vec<u64>,
+    pub(super) nodes: Vec<Vec3>,
+    pub(super) tets: Vec<[u32; 4]>,
     element_tags: Vec<u64>,
     /// The physical group of each tetrahedron.
     tet_groups: Vec<Option<u64>>,
-    triangles: BTreeMap<u64, Triangles>,
-    lines: BTreeMap<u64, Vec<[u32; 2]>>,
+    pub(super) triangles: BTreeMap<u64, Triangles>,
+    pub(super) lines: BTreeMap<u64, Vec<[u32; 2]>>,
     names: BTreeMap<(i64, u64), String>,
+    /// Whether the file lacks the section that says which groups elements are in.
+    pub(super) no_entities: bool,
 }
 
 /// The triangles of a group; one that comes twice is kept once.
 #[derive(Default)]
-struct Triangles {
-    list: Vec<[u32; 3]>,
+pub(super) struct Triangles {
+    pub(super) list: Vec<[u32; 3]>,
     sorted: HashSet<[u32; 3]>,
 }
 
@@ -97,11 +99,25 @@ impl Assembly {
         self.tet_groups.push(group);
     }
 
-    pub(super) fn name_group(&mut self, dimension: i64, tag: u64, name: &str) {
-        self.names.insert((dimension, tag), name.to_owned());
+    /// Names a group, on the line that was read last.
+    pub(super) fn name_group(
+        &mut self,
+        cursor: &Cursor,
+        (dimension, tag): (i64, u64),
+        name: &str,
+    ) -> Result<()> {
+        match self.names.insert((dimension, tag), name.to_owned()) {
+            Some(first) if first != name => Err(cursor.wrong(GmshProblem::TwoNamesOfOne {
+                dimension,
+                tag,
+                first,
+                second: name.to_owned(),
+            })),
+            _ => Ok(()),
+        }
     }
 
-    fn group_name(&self, dimension: i64, tag: u64) -> String {
+    pub(super) fn group_name(&self, dimension: i64, tag: u64) -> String {
         match self.names.get(&(dimension, tag)) {
             Some(name) => name.clone(),
             None => tag.to_string(),
@@ -156,77 +172,17 @@ impl Assembly {
         })
     }
 
-    /// The plane mesh of a meridian; `command` is what makes one in two dimensions.
-    pub(super) fn finish_plane(
-        mut self,
-        command: String,
-    ) -> std::result::Result<PlaneFile, GmshProblem> {
-        if !self.tets.is_empty() {
-            return Err(GmshProblem::NotPlane);
-        }
-        if self.triangles.is_empty() {
-            return Err(GmshProblem::NoTriangles { command });
-        }
-        self.check_names(2, "surface", self.triangles.keys())?;
-        self.check_names(1, "curve", self.lines.keys())?;
-        let mut notes = Vec::new();
-        self.drop_unused_nodes(&mut notes);
-        let nodes = self.in_the_plane()?;
-        let (mut triangles, mut areas) = (Vec::new(), Vec::new());
-        let mut seen: HashMap<[u32; 3], u64> = HashMap::new();
-        for (&group, own) in &self.triangles {
-            let first = triangles.len() as u32;
-            for &triangle in &own.list {
-                let mut key = triangle;
-                key.sort_unstable();
-                if let Some(other) = seen.insert(key, group) {
-                    let [first, second] = [other, group].map(|g| self.group_name(2, g));
-                    return Err(GmshProblem::TwoAreas { first, second });
-                }
-                triangles.push(triangle);
-            }
-            let own = (first..triangles.len() as u32).collect();
-            areas.push((self.group_name(2, group), own));
-        }
-        let lines = self.lines.iter();
-        let lines = lines.map(|(&g, lines)| (self.group_name(1, g), lines.clone()));
-        Ok(PlaneFile {
-            plane: PlaneMesh {
-                nodes,
-                triangles,
-                areas,
-                lines: lines.collect(),
-            },
-            node_tags: self.node_tags,
-            notes,
-        })
-    }
-
-    /// Radius and height of the nodes: x and z in the plane y = 0, or x and y in the plane z = 0.
-    fn in_the_plane(&self) -> std::result::Result<Vec<[f64; 2]>, GmshProblem> {
-        let size = self.nodes.iter().map(|x| x.abs().max_element());
-        let tolerance = 1e-9 * size.fold(0.0, f64::max);
-        let flat = |d: usize| self.nodes.iter().position(|x| x[d].abs() > tolerance);
-        let height = match (flat(1), flat(2)) {
-            (None, _) => 2,
-            (_, None) => 1,
-            (Some(n), _) => return Err(GmshProblem::OutOfPlane(self.node_tags[n])),
-        };
-        if let Some(n) = self.nodes.iter().position(|x| x.x < -tolerance) {
-            return Err(GmshProblem::NegativeRadius(self.node_tags[n]));
-        }
-        Ok(self.nodes.iter().map(|x| [x.x, x[height]]).collect())
-    }
-
     /// A named group without elements is left out, since nothing could be done with it.
     fn note_empty_groups(&self, volumes: &BTreeMap<u64, Vec<u32>>, notes: &mut Vec<String>) {
         let named = self.names.keys().any(|&(dimension, _)| dimension >= 2);
         if named && volumes.is_empty() && self.triangles.is_empty() {
-            notes.push(
-                "no element is in one of the file's physical groups; MSH 2.2 loses them under \
-                 Mesh.SaveAll, MSH 4.1 does not"
-                    .to_owned(),
-            );
+            let why = match self.no_entities {
+                true => "its section `$Entities`, which says what is in them, is missing",
+                false => "MSH 2.2 loses them under Mesh.SaveAll, MSH 4.1 does not",
+            };
+            notes.push(format!(
+                "no element is in one of the file's physical groups; {why}"
+            ));
             return;
         }
         for (&(dimension, tag), name) in &self.names {
@@ -276,7 +232,7 @@ impl Assembly {
     }
 
     /// Two groups of one name could not be told apart by it.
-    fn check_names<'a>(
+    pub(super) fn check_names<'a>(
         &self,
         dimension: i64,
         kind: &'static str,
@@ -299,7 +255,7 @@ impl Assembly {
 
     /// Keeps the nodes of tetrahedra, and those of triangles in a group: should such a triangle
     /// be no face of a tetrahedron, it is for the mesh to say so.
-    fn drop_unused_nodes(&mut self, notes: &mut Vec<String>) {
+    pub(super) fn drop_unused_nodes(&mut self, notes: &mut Vec<String>) {
         let mut used = vec![false; self.nodes.len()];
         let groups = self.triangles.values().flat_map(|t| &t.list);
         for &n in self.tets.iter().flatten().chain(groups.flatten()) {

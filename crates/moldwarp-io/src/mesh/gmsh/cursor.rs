@@ -123,8 +123,8 @@ impl<'a> Cursor<'a> {
         }
         let line = self.rest_of_line().trim_ascii_end();
         match std::str::from_utf8(&line[1..]) {
-            Ok(name) => Ok(Some(name)),
-            Err(_) => {
+            Ok(name) if !name.is_empty() => Ok(Some(name)),
+            _ => {
                 self.at = self.last;
                 Err(self.unexpected_here("a section, `$Name`"))
             }
@@ -214,7 +214,7 @@ impl<'a> Cursor<'a> {
     /// A line with the number of things to come, each of `least` bytes or more.
     pub(super) fn text_count(&mut self, what: &'static str, least: usize) -> Result<u64> {
         self.begin_text_line();
-        let count = self.text_integer(what)?;
+        let count = self.text_integer(what).map_err(|e| number_of(what, e))?;
         let Ok(count) = u64::try_from(count) else {
             return Err(self.unexpected(&format!("the number of {what}"), &count.to_string()));
         };
@@ -251,6 +251,19 @@ impl<'a> Cursor<'a> {
             Some(_) => Err(self.unexpected_here("the end of the line")),
         }
     }
+}
+
+/// Where the number of some things was expected, not these.
+pub(super) fn number_of(what: &str, mut error: MeshFileError) -> MeshFileError {
+    if let MeshFileError::At {
+        problem: GmshProblem::Expected { expected, .. },
+        ..
+    } = &mut error
+        && expected.starts_with(what)
+    {
+        *expected = format!("the number of {expected}");
+    }
+    error
 }
 
 #[inline]

@@ -2,7 +2,7 @@
 
 use super::super::{GmshProblem, MeshFileError};
 use super::Result;
-use super::cursor::{Cursor, Encoding};
+use super::cursor::{Cursor, Encoding, number_of};
 
 impl Cursor<'_> {
     /// Turns to binary; here stands the integer 1.
@@ -145,7 +145,7 @@ impl Cursor<'_> {
     /// bytes or more in ASCII, and `bytes` or more in binary: what cannot be true is refused
     /// before memory is taken for it.
     pub(super) fn count(&mut self, what: &'static str, fields: usize, bytes: usize) -> Result<u64> {
-        let count = self.size(what)?;
+        let count = self.size(what).map_err(|e| number_of(what, e))?;
         let least = if self.is_binary() { bytes } else { 2 * fields };
         self.check_room(count, what, least)?;
         Ok(count)

@@ -2,12 +2,13 @@
 //!
 //! A file is a row of sections, `$Name` … `$EndName`. The bytes are read by [`cursor`], which
 //! knows ASCII from binary, the sections by [`v22`] and [`v41`], which know the two layouts, and
-//! what they find is put together by [`assembly`].
+//! what they find is put together by [`assembly`], to the plane mesh of a meridian by [`meridian`].
 
 mod assembly;
 mod cursor;
 mod element_type;
 mod fields;
+mod meridian;
 mod v22;
 mod v41;
 
@@ -42,12 +43,19 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Assembly> {
     let mut cursor = Cursor::new(path, bytes);
     let version = header(&mut cursor)?;
     let mut assembly = Assembly::default();
+    assembly.no_entities = version == Version::V41;
     let mut groups = v41::EntityGroups::default();
     let (mut has_nodes, mut has_elements) = (false, false);
     while let Some(section) = cursor.section()? {
         match (section, version) {
             ("PhysicalNames", _) => physical_names(&mut cursor, &mut assembly)?,
-            ("Entities", Version::V41) => groups = v41::entities(&mut cursor)?,
+            ("Entities", Version::V41) if has_elements => {
+                return Err(cursor.wrong(GmshProblem::EntitiesLast));
+            }
+            ("Entities", Version::V41) => {
+                assembly.no_entities = false;
+                groups = v41::entities(&mut cursor)?;
+            }
             ("PartitionedEntities", Version::V41) => {
                 let command = mesh_command(path);
                 return Err(cursor.wrong(GmshProblem::Partitioned { command }));
@@ -107,10 +115,16 @@ fn header(cursor: &mut Cursor) -> Result<Version> {
     }
     if !cursor.begins_with(b"$MeshFormat") {
         let file = cursor.file;
-        let is_geometry = file.extension().is_some_and(|e| e == "geo");
-        let advice = match is_geometry {
-            true => format!("; mesh it with `{}`", mesh_command(file)),
-            false => String::new(),
+        let extension = file.extension().unwrap_or_default();
+        let advice = match extension.to_string_lossy().to_lowercase().as_str() {
+            "geo" => format!("; mesh it with `{}`", mesh_command(file)),
+            "msh" | "toml" => {
+                "; mesh the geometry again, or name the mesh that Gmsh wrote".to_owned()
+            }
+            _ => format!(
+                "; of the formats that Gmsh reads it makes this one: `{}`",
+                convert_command(file)
+            ),
         };
         let found = cursor.peek();
         return Err(cursor.wrong(GmshProblem::NotGmsh { found, advice }));
@@ -154,7 +168,7 @@ fn physical_names(cursor: &mut Cursor, assembly: &mut Assembly) -> Result<()> {
         }
         let tag = cursor.text_integer("the tag of a physical group")?;
         let name = cursor.quoted("the name of a physical group in double quotes, as UTF-8")?;
-        assembly.name_group(dimension, tag.unsigned_abs(), name);
+        assembly.name_group(cursor, (dimension, tag.unsigned_abs()), name)?;
     }
     Ok(())
 }

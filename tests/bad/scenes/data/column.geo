@@ -1,0 +1,1 @@
+// a geometry that is not meshed

@@ -9,6 +9,7 @@
 //! with little memory: see [`memory`].
 
 mod cases;
+#[path = "../../../../fuzz/src/memory.rs"]
 mod memory;
 mod messages;
 mod paths;

@@ -3,6 +3,7 @@
 use super::memory::CASE;
 use super::mutate::{Seeds, case};
 use super::targets::Target;
+use std::fs::{create_dir_all, write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -32,16 +33,20 @@ pub fn replay(target: &Target) -> Tally {
     tally
 }
 
+fn seeds(target: &Target) -> Seeds {
+    let all = (target.seeds)();
+    let right = all.iter().filter(|seed| (target.run)(seed)).cloned();
+    let right = right.collect();
+    Seeds { all, right }
+}
+
 /// Runs the cases from `first` on, until `count` are done or the time is up.
 ///
 /// # Errors
 ///
 /// The number of a case that panicked; its message has been printed.
 pub fn run(target: &Target, first: u64, count: u64, limit: Duration) -> Result<Tally, u64> {
-    let all = (target.seeds)();
-    let right = all.iter().filter(|seed| (target.run)(seed)).cloned();
-    let right = right.collect();
-    let (seeds, start) = (Seeds { all, right }, Instant::now());
+    let (seeds, start) = (seeds(target), Instant::now());
     let mut tally = Tally::default();
     for number in first..first.saturating_add(count) {
         if start.elapsed() > limit {
@@ -91,7 +96,14 @@ pub fn main(target: &Target) -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(number) => {
-            eprintln!("case {number} panicked; again: {} 1 {number}", target.name);
+            let file = format!("artifacts/{}-{number}", target.name);
+            let bytes = case(number, &seeds(target), target.most);
+            let kept = create_dir_all("artifacts").and_then(|()| write(&file, bytes));
+            let kept = kept.map_or_else(|e| e.to_string(), |()| format!("it is kept as {file}"));
+            eprintln!(
+                "case {number} panicked; {kept}; again: {} 1 {number}",
+                target.name
+            );
             ExitCode::FAILURE
         }
     }

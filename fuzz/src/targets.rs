@@ -89,7 +89,8 @@ fn gmsh(bytes: &[u8]) -> bool {
 fn whole(raw: RawMesh, node_tags: &[u64], element_tags: &[u64]) -> bool {
     match Mesh::new(raw) {
         Ok(mesh) => {
-            assert!(mesh.volumes.iter().all(|v| *v > 0.0), "a volume of nothing");
+            let mut volumes = mesh.volumes.iter();
+            assert!(volumes.all(|v| *v > 0.0 && v.is_finite()), "no volume");
             check_overlap(&mesh, element_tags).is_ok()
         }
         Err(error) => !told(&explain_mesh_error(&error, node_tags, element_tags)),

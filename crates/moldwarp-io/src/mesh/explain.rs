@@ -49,15 +49,8 @@ pub fn explain_mesh_error(error: &MeshError, node_tags: &[u64], element_tags: &[
             others,
         } => {
             let (e, others) = (element(*e), more(*others));
-            // Compared with its edges' cube, which may be beyond all numbers.
-            let remedy = match volume.abs() < 1e30 {
-                true => MESH_AGAIN,
-                false => {
-                    "its coordinates are too large to compute with: check them and `mesh.unit`"
-                }
-            };
             format!(
-                "element {e} is flat, its volume is {} m³{others}; {remedy}",
+                "element {e} is flat, its volume is {} m³{others}; {MESH_AGAIN}",
                 number(*volume)
             )
         }

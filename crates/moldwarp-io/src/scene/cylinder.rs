@@ -4,7 +4,7 @@
 
 use super::amount::{Amount, OneOrMany, Spanned, each};
 use super::error::Fault;
-use super::mesh::MOST_CELLS;
+use super::mesh::{MOST_CELLS, has_volumes};
 use super::quantity::Dimension;
 use super::raw::{RawCylinder, RawDirections, RawProfile};
 use super::values::{amount, amount_at, choose, count, placed};
@@ -45,6 +45,10 @@ pub(super) fn cylinder(raw: &Spanned<RawCylinder>) -> Result<Mesh, Fault> {
     sector
         .mesh()
         .map_err(|e| explain(&e, &sector, raw, place).caused_by(e))
+        .and_then(|mesh| match has_volumes(&mesh) {
+            true => Ok(mesh),
+            false => Err(no_volumes(raw)),
+        })
 }
 
 fn profile(key: &str, raw: &RawProfile) -> Result<Vec<[f64; 2]>, Fault> {
@@ -186,11 +190,13 @@ fn explain(
             fault.at(place, format!("has {given}"))
         }
         CylinderError::Grading { direction } => fault.at(grading(direction), "not greater than 0"),
-        CylinderError::Mesh(_) => {
-            Fault::new("the cylinder's cells are too small or too large to compute their volumes")
-                .at(raw.profile.span(), "are the units right?")
-                .at(raw.cells.span(), "over so many cells")
-                .help("write the unit in each length, as in [\"0.5 m\", \"20 cm\"]")
-        }
+        CylinderError::Mesh(_) => no_volumes(raw),
     }
+}
+
+fn no_volumes(raw: &RawCylinder) -> Fault {
+    Fault::new("the cylinder's cells are too small or too large to compute their volumes")
+        .at(raw.profile.span(), "are the units right?")
+        .at(raw.cells.span(), "over so many cells")
+        .help("write the unit in each length, as in [\"0.5 m\", \"20 cm\"]")
 }

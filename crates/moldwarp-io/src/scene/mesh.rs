@@ -78,13 +78,22 @@ fn generated(cuboid: &Spanned<RawBox>) -> Result<Mesh, Fault> {
             .at(raw.cells.span(), format!("more than {MOST_CELLS}"))
             .help("each cell becomes six elements; take fewer"));
     }
-    box_mesh(size, cells).map_err(|error| {
+    let fault = || {
         Fault::new("the box's cells are too small or too large to compute their volumes")
             .at(raw.size.span(), "are the units right?")
             .at(raw.cells.span(), "over so many cells")
             .help("write the unit in each length, as in size = [\"1 m\", \"1 m\", \"20 cm\"]")
-            .caused_by(error)
-    })
+    };
+    let mesh = box_mesh(size, cells).map_err(|error| fault().caused_by(error))?;
+    match has_volumes(&mesh) {
+        true => Ok(mesh),
+        false => Err(fault()),
+    }
+}
+
+/// Whether the volumes of a generated mesh are numbers; files are checked by their reader.
+pub(super) fn has_volumes(mesh: &Mesh) -> bool {
+    mesh.total_volume().is_finite()
 }
 
 fn from_file(

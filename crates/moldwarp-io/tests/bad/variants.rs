@@ -89,6 +89,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
         "a file without tetrahedra is refused by its reader",
     ),
     (
+        "MeshError::NotFinite",
+        "a coordinate that is not finite is refused by the reader",
+    ),
+    (
         "MeshError::NoSuchNode",
         "a node that is not there is refused by the reader",
     ),

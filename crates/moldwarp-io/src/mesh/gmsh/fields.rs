@@ -124,6 +124,17 @@ impl Cursor<'_> {
         }
     }
 
+    /// A coordinate. Volumes of what is larger than any mesh in any unit would be no numbers.
+    #[inline]
+    pub(super) fn coordinate(&mut self) -> Result<f64> {
+        const MOST: f64 = 1e30;
+        let x = self.real("a coordinate")?;
+        match x.abs() <= MOST {
+            true => Ok(x),
+            false => Err(self.unexpected("a coordinate, at most 1e30", &format!("{x:e}"))),
+        }
+    }
+
     /// Steps over `count` fields of `bytes` each.
     pub(super) fn skip(&mut self, count: u64, bytes: usize, what: &str) -> Result<()> {
         if !self.is_binary() {

@@ -17,7 +17,7 @@ pub(super) fn nodes(cursor: &mut Cursor, assembly: &mut Assembly) -> Result<()> 
         assembly.add_node(cursor, tag)?;
         let mut x = Vec3::ZERO;
         for d in 0..3 {
-            x[d] = cursor.real("a coordinate")?;
+            x[d] = cursor.coordinate()?;
         }
         assembly.add_coordinates(x);
         cursor.end_record()?;

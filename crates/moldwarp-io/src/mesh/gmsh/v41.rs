@@ -125,7 +125,7 @@ pub(super) fn nodes(cursor: &mut Cursor, assembly: &mut Assembly) -> Result<()> 
             cursor.begin_record();
             let mut x = Vec3::ZERO;
             for d in 0..3 {
-                x[d] = cursor.real("a coordinate")?;
+                x[d] = cursor.coordinate()?;
             }
             cursor.skip(parameters, 8, "the parameters of a node")?;
             cursor.end_record()?;

@@ -20,15 +20,24 @@ fn distance(a: &str, b: &str) -> usize {
     rows[a.len()][b.len()]
 }
 
+/// Longer texts are no slips of names, bytes.
+const LONGEST: usize = 200;
+
 /// The name most like `wrong`, if one is like it at all. Case, `-` and `_` do not matter.
 pub(super) fn nearest<'a>(
     wrong: &str,
     names: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
     let plain = |name: &str| name.to_lowercase().replace('-', "_");
+    // The distance takes time and memory in proportion to the product of lengths.
+    let is_a_name = |name: &str| name.len() <= LONGEST;
+    if !is_a_name(wrong) {
+        return None;
+    }
     let wrong = plain(wrong);
     names
         .into_iter()
+        .filter(|name| is_a_name(name))
         .map(|name| (distance(&wrong, &plain(name)), name))
         .filter(|&(d, name)| d <= (name.chars().count().max(wrong.chars().count()) / 3).max(1))
         .min_by_key(|&(d, _)| d)
@@ -78,5 +87,7 @@ mod tests {
         assert_eq!(nearest("zmax", names), Some("z-max"));
         assert_eq!(nearest("X_MIN", names), Some("x-min"));
         assert_eq!(nearest("bottom", names), None);
+        let long = "x".repeat(10_000_000);
+        assert_eq!(nearest(&long, [&*long]), None);
     }
 }

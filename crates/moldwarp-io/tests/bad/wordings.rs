@@ -2,7 +2,8 @@
 //!
 //! Faults of a scene are no enumeration: each is worded where it is found, by `Fault::new`. So the
 //! places of these calls are the variants. They are looked up in the reader's text, and each error of
-//! the corpus tells its own.
+//! the corpus tells its own. What a sweep says of its options is no matter of files and is tested in
+//! moldwarp-cli.
 
 use crate::cases;
 use moldwarp_io::run::RunError;

@@ -154,6 +154,9 @@ pub struct Pile {
     /// Number of the cell in the order in which cells are given.
     pub cell: u32,
     pub first: u32,
+    /// From one to the next: a cell's particles go round its lanes, so that ranks and places have the same
+    /// order, and an order that is found anew is the same.
+    pub stride: u32,
     pub count: u32,
     /// Whether it is a helper's.
     pub more: bool,
@@ -180,11 +183,13 @@ impl Tiles {
                 self.push(&mut piles[..lanes], &mut place, &mut lane, &mut put);
                 lanes = 0;
             }
-            for k in 0..wanted as u32 {
+            let stride = wanted as u32;
+            for k in 0..stride {
                 piles[lanes] = Pile {
                     cell: cell as u32,
-                    first: first + k * deep,
-                    count: (count - k * deep).min(deep),
+                    first: first + k,
+                    stride,
+                    count: (count + stride - 1 - k) / stride,
                     more: k > 0,
                 };
                 lanes += 1;
@@ -233,7 +238,7 @@ impl Tiles {
         for k in 0..deepest {
             self.slots.push(*place);
             for pile in piles.iter().take_while(|pile| pile.count > k) {
-                put(pile.first + k, *place);
+                put(pile.first + k * pile.stride, *place);
                 *place += 1;
             }
         }

@@ -6,6 +6,7 @@
 
 use crate::boundary::{Surroundings, load_points};
 use crate::measure::Scale;
+use crate::mesh::NONE;
 use crate::particles::{Order, Particles, Seed, check_overlap, inherited, particles, seeds};
 use crate::plan::{Load, Plan};
 use crate::simulation::{SetupError, Simulation, Stop};
@@ -99,6 +100,7 @@ impl Simulation {
         self.take_away();
         let plan = &self.plan;
         let new = particles(&seeds, &plan.mesh, &plan.bodies, &plan.materials);
+        self.present += new.len() as u64;
         self.particles.append(new);
         if !self.plan.contacts.is_empty() {
             self.contacts.measure(&self.plan, &self.particles);
@@ -135,35 +137,56 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes away the particles of removed bodies, and what looks at them and loads them.
+    /// Takes away the particles of removed bodies.
     fn take_away(&mut self) {
-        let Simulation {
-            plan,
-            particles,
-            clock,
-            ledger,
-            loads,
-            probes,
-            ..
-        } = self;
-        let removed = &plan.stages[clock.stage].remove;
+        let removed = &self.plan.stages[self.clock.stage].remove;
         if removed.is_empty() {
             return;
         }
         let stays = |body: &u16| !removed.contains(&usize::from(*body));
-        let keep: Vec<bool> = particles.body.iter().map(stays).collect();
-        let gone = (0..particles.len()).filter(|&p| !keep[p]);
-        let kinetic =
-            |p: usize| 0.5 * particles.mass[p] * particles.velocity.at(p).length_squared();
-        ledger.remove(gone.map(kinetic).sum());
+        let keep: Vec<bool> = self.particles.body.iter().map(stays).collect();
+        self.discard(&keep);
+    }
+
+    /// Takes out and counts the particles that have left through outflow surfaces: they are in no element.
+    pub(crate) fn let_out(&mut self) -> Result<(), Stop> {
+        let particles = &self.particles;
+        let keep: Vec<bool> = particles.element.iter().map(|&e| e != NONE).collect();
+        let gone = || (0..particles.len()).filter(|&p| !keep[p]);
+        self.outflown.particles += gone().count() as u64;
+        self.outflown.mass += gone().map(|p| particles.mass[p]).sum::<f64>();
+        self.discard(&keep);
+        if self.particles.is_empty() {
+            return Err(Stop::Empty {
+                stage: self.plan.stages[self.clock.stage].name.clone(),
+                time: self.clock.time,
+            });
+        }
+        Ok(())
+    }
+
+    /// Keeps only these particles. What looks at the others and loads them goes with them.
+    fn discard(&mut self, keep: &[bool]) {
+        let Simulation {
+            particles,
+            ledger,
+            loads,
+            probes,
+            present,
+            ..
+        } = self;
+        let gone = || (0..particles.len()).filter(|&p| !keep[p]);
+        let square = |p: usize| particles.velocity.at(p).length_squared();
+        ledger.remove(gone().map(|p| 0.5 * particles.mass[p] * square(p)).sum());
+        *present -= gone().count() as u64;
         let mut left = 0;
         let place = |&stays: &bool| {
-            let place = left;
+            let place = if stays { left } else { NONE };
             left += u32::from(stays);
             place
         };
         let places: Vec<u32> = keep.iter().map(place).collect();
-        particles.retain(&keep);
+        particles.retain(keep);
         loads.retain(|point| keep[point.particle as usize]);
         for point in loads {
             point.particle = places[point.particle as usize];

@@ -184,6 +184,8 @@ pub enum BoundaryKind {
         /// δ_n, δ_s, m.
         virtual_thickness: Option<[f64; 2]>,
     },
+    /// Material leaves the mesh here.
+    Outflow,
 }
 
 /// A load on a surface, carried by the particles of one body next to it.

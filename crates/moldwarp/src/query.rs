@@ -90,6 +90,17 @@ impl Simulation {
         self.ledger.turned_over()
     }
 
+    /// What has left through outflow surfaces.
+    pub fn outflown(&self) -> crate::boundary::Outflown {
+        self.outflown
+    }
+
+    /// Number of particles that are missing: those at the start and added by stages, without those removed
+    /// by stages and let out, against those that are there. Any is a bug.
+    pub fn lost_particles(&self) -> u64 {
+        self.present.abs_diff(self.particles.len() as u64)
+    }
+
     /// Particles that were put back onto their side of aligned contacts.
     pub fn projections(&self) -> crate::contact::Projections {
         self.contacts.projections

@@ -3,7 +3,8 @@
 use crate::Vec3;
 use crate::bodies;
 use crate::boundary::{
-    Absorbing, Constraints, LoadError, LoadPoint, Surroundings, load_points, surface_nodes,
+    Absorbing, Constraints, LoadError, LoadPoint, Outflow, Outflown, Surroundings, load_points,
+    surface_nodes,
 };
 use crate::contact::{ContactError, Contacts, Fields, is_rigid};
 use crate::lanes::Simd;
@@ -105,6 +106,37 @@ pub enum Stop {
         stage: String,
         time: f64,
     },
+    #[error(
+        "{what} of particle {id} of body `{body}` (and of {others} more) is not a finite number, {time:e} s \
+         after the start in stage `{stage}`: look for values out of proportion in materials, loads and velocities around \
+         {position} m"
+    )]
+    NotFinite {
+        what: &'static str,
+        id: u32,
+        others: usize,
+        body: String,
+        position: Vec3,
+        stage: String,
+        time: f64,
+    },
+    #[error(
+        "particle {id} of body `{body}` at {position} m is crushed to no volume in one step, {time:e} s \
+         after the start in stage `{stage}`: loads or velocities are out of proportion to the stiffness, or \
+         the time step is too long for them; lower `numerics.courant`"
+    )]
+    Crushed {
+        id: u32,
+        body: String,
+        position: Vec3,
+        stage: String,
+        time: f64,
+    },
+    #[error(
+        "all material has left through outflow surfaces, {time:e} s after the start in stage `{stage}`: \
+         end the stage earlier"
+    )]
+    Empty { stage: String, time: f64 },
     #[error("stage `{stage}`, {time:e} s after the start: {error}")]
     Motion {
         error: MotionError,
@@ -178,6 +210,10 @@ pub struct Simulation {
     pub(crate) cells: Cells,
     pub(crate) constraints: Constraints,
     pub(crate) absorbing: Absorbing,
+    pub(crate) outflow: Outflow,
+    pub(crate) outflown: Outflown,
+    /// Number of particles that there should be.
+    pub(crate) present: u64,
     pub(crate) follower: Follower,
     pub(crate) driven: Driven,
     pub(crate) loads: Vec<LoadPoint>,
@@ -222,6 +258,7 @@ impl Simulation {
             .iter()
             .map(|body| moduli(&plan.materials[body.material].model))
             .collect();
+        let present = particles.len() as u64;
         let mut simulation = Simulation {
             gravity: plan.gravity,
             switches: Switches::new(&plan),
@@ -238,6 +275,9 @@ impl Simulation {
             cells: Cells::default(),
             constraints: Constraints::default(),
             absorbing: Absorbing::default(),
+            outflow: Outflow::default(),
+            outflown: Outflown::default(),
+            present,
             follower: Follower::default(),
             driven: Driven::default(),
             loads,
@@ -258,6 +298,7 @@ impl Simulation {
         simulation.reorder();
         simulation.begin_stage().map_err(|stop| match stop {
             Stop::TimeStep { error, .. } => SetupError::TimeStep(error),
+            Stop::NotFinite { .. } => SetupError::TimeStep(TimeStepError::NotFinite),
             Stop::Motion { error, .. } => SetupError::Motion(error),
             Stop::NoRoom {
                 body: second,
@@ -273,6 +314,8 @@ impl Simulation {
             | Stop::PassedAFace { .. }
             | Stop::TurnedOver { .. }
             | Stop::Degenerate { .. }
+            | Stop::Empty { .. }
+            | Stop::Crushed { .. }
             | Stop::NotAtRest { .. } => {
                 unreachable!("nothing has moved yet")
             }
@@ -417,6 +460,47 @@ impl Simulation {
                 time,
             },
             other => other,
+        }
+    }
+
+    /// For a sum over particles that is not a finite number.
+    pub(crate) fn not_finite(&self) -> Stop {
+        let p = &self.particles;
+        let stress = |i: usize| p.stress.at(i).iter().all(|s| s.is_finite());
+        let checks: [(&str, &dyn Fn(usize) -> bool); 3] = [
+            ("the velocity", &|i| p.velocity.at(i).is_finite()),
+            ("the stress", &stress),
+            ("the position", &|i| p.position.at(i).is_finite()),
+        ];
+        let found = checks.iter().find_map(|(what, finite)| {
+            let wrong = || (0..p.len()).filter(|&i| !finite(i));
+            let first = wrong().min_by_key(|&i| p.id[i])?;
+            Some((*what, first, wrong().count() - 1))
+        });
+        // A finite velocity may have a square that is none.
+        let (what, i, others) = found.unwrap_or(("the energy of motion", 0, 0));
+        Stop::NotFinite {
+            what,
+            others,
+            id: p.id[i],
+            body: self.plan.bodies[usize::from(p.body[i])].name.clone(),
+            position: p.position.at(i),
+            stage: self.plan.stages[self.clock.stage].name.clone(),
+            time: self.clock.time,
+        }
+    }
+
+    /// For particles of which some have no volume left.
+    pub(crate) fn crushed(&self) -> Stop {
+        let p = &self.particles;
+        let crushed = (0..p.len()).filter(|&i| p.volume[i] <= 0.0);
+        let i = crushed.min_by_key(|&i| p.id[i]).unwrap_or(0);
+        Stop::Crushed {
+            id: p.id[i],
+            body: self.plan.bodies[usize::from(p.body[i])].name.clone(),
+            position: p.position.at(i),
+            stage: self.plan.stages[self.clock.stage].name.clone(),
+            time: self.clock.time,
         }
     }
 

@@ -1,7 +1,7 @@
 //! How stages begin and end.
 
 use crate::Mat3;
-use crate::boundary::{Absorbing, Constraints, surface_nodes};
+use crate::boundary::{Absorbing, Constraints, Outflow, surface_nodes};
 use crate::material::Material;
 use crate::measure::Watch;
 use crate::mesh::{Driven, Face, Follower, Mesh, MotionError, Walls, Zones};
@@ -91,6 +91,7 @@ impl Simulation {
         self.follower = follower(&self.plan, &boundaries, free, |n| driven.in_zone(n));
         self.driven = driven;
         let walls = walls(&self.plan.mesh, &boundaries);
+        let outflow = Outflow::new(&self.plan.mesh, &boundaries);
         let before = std::mem::take(&mut self.absorbing);
         let stressed = self.plan.initial_stress.is_some() || !self.plan.inherited.is_empty();
         if first && stressed {
@@ -100,6 +101,7 @@ impl Simulation {
         } else if !first {
             absorbing.go_on_from(&before, |n| free(n) * self.reaction(n));
         }
+        self.outflow = outflow;
         self.constraints = constraints;
         self.absorbing = absorbing;
         self.walls = walls;

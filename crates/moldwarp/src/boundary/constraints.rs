@@ -73,7 +73,9 @@ impl Constraints {
                     functions.push(function.clone());
                     velocity.map(|v| v.map(|v| (v, functions.len() - 1)))
                 }
-                BoundaryKind::Roller | BoundaryKind::Absorbing { .. } => continue,
+                BoundaryKind::Roller | BoundaryKind::Absorbing { .. } | BoundaryKind::Outflow => {
+                    continue;
+                }
             };
             axes.extend(
                 surface_nodes(mesh, &boundary.surfaces)

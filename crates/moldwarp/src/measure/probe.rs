@@ -7,7 +7,7 @@
 
 use crate::Vec3;
 use crate::contact::Contacts;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, NONE};
 use crate::parallel::fold;
 use crate::particles::{Order, Particles};
 use crate::plan::{Plan, Probe, Quantity, Target};
@@ -108,13 +108,21 @@ impl Probes {
         }
     }
 
-    /// Follows particles to their new places.
+    /// Follows particles to their new places. Of those without one the others take over the weight; a probe
+    /// of none has no values any more.
     pub(crate) fn reorder(&mut self, destination: &[u32]) {
         for place in &mut self.places {
-            if let Place::Particles(particles) = place {
-                particles
-                    .iter_mut()
-                    .for_each(|p| p.0 = destination[p.0 as usize]);
+            let Place::Particles(particles) = place else {
+                continue;
+            };
+            let count = particles.len();
+            particles
+                .iter_mut()
+                .for_each(|p| p.0 = destination[p.0 as usize]);
+            particles.retain(|p| p.0 != NONE);
+            if particles.len() < count {
+                let whole: f64 = particles.iter().map(|p| p.1).sum();
+                particles.iter_mut().for_each(|p| p.1 /= whole);
             }
         }
     }
@@ -191,6 +199,7 @@ impl Place {
                     .map(|n| n.vector(sim, quantity) * weight(n))
                     .sum()
             }
+            Place::Particles(gone) if gone.is_empty() => Vec3::NAN,
             Place::Particles(particles) => particles
                 .iter()
                 .map(|&(p, w)| particle_vector(sim, p as usize, quantity) * w)
@@ -237,6 +246,7 @@ impl Place {
                     }
                 }
             }
+            Place::Particles(gone) if gone.is_empty() => mean = [f64::NAN; 6],
             Place::Particles(particles) => {
                 for &(p, weight) in particles {
                     crate::tensor::add_scaled(

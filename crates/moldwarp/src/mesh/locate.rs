@@ -1,6 +1,6 @@
 //! Finding the element that holds a point by walking over neighbours.
 
-use super::{Mesh, NONE};
+use super::{Face, Mesh, NONE};
 use crate::Vec3;
 
 /// How far outside an element, in barycentric coordinates, a point still counts as in it:
@@ -11,6 +11,12 @@ impl Mesh {
     /// Walks from element `start` to the one that holds `x`, always across the face behind which
     /// `x` lies farthest; `None` if the way leads out of the mesh.
     pub fn walk(&self, start: u32, x: Vec3) -> Option<u32> {
+        self.walk_or_leave(start, x).ok()
+    }
+
+    /// As [`Mesh::walk`]; the error is the face by which the way leads out of the mesh, if it does not just
+    /// go astray.
+    pub fn walk_or_leave(&self, start: u32, x: Vec3) -> Result<u32, Option<Face>> {
         let mut at = start;
         // A walk that visits every element once has gone astray (only possible round holes).
         for _ in 0..=self.tets.len() {
@@ -29,14 +35,18 @@ impl Mesh {
                 }
             }
             if inside {
-                return Some(at);
+                return Ok(at);
             }
             if next == NONE {
-                return None;
+                let outermost = (0..4).min_by(|&a, &b| n[a].total_cmp(&n[b]));
+                return Err(outermost.map(|local| Face {
+                    element: at,
+                    local: local as u8,
+                }));
             }
             at = next;
         }
-        None
+        Err(None)
     }
 
     /// Whether `x` lies in element `e` (on its surface counts).

@@ -5,12 +5,13 @@ use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, interpolate, load_
 use super::state::moved;
 use super::{TILES, guard};
 use crate::Vec3;
+use crate::boundary::Outflow;
 use crate::contact::{Contacts, Fields};
 use crate::lanes::{
     self, ByTile, LANES, Lane, either, for_each_simd, get, load, load_one, set, store, whole,
 };
 use crate::measure::Part;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, NONE};
 use crate::parallel::{First, Sum, fold};
 use crate::simulation::{Simulation, Stop};
 use std::ops::Range;
@@ -129,6 +130,8 @@ struct Crossing {
     crossed: First,
     /// Across a face that they must not pass: they are still in the old element.
     passed: First,
+    /// Out of the mesh, through an outflow surface: they are in no element.
+    gone: First,
 }
 
 impl Sum for Crossing {
@@ -137,6 +140,7 @@ impl Sum for Crossing {
             outside: self.outside.plus(other.outside),
             crossed: self.crossed.plus(other.crossed),
             passed: self.passed.plus(other.passed),
+            gone: self.gone.plus(other.gone),
         }
     }
 }
@@ -146,16 +150,24 @@ struct Search<'a> {
     mesh: &'a Mesh,
     fields: &'a Fields,
     contacts: &'a Contacts,
+    outflow: &'a Outflow,
     body: &'a [u16],
 }
 
 impl Search<'_> {
+    /// Whether a particle is of a rigid body, which goes as a whole or stays.
+    fn is_rigid(&self, p: usize) -> bool {
+        let field = self.fields.of(self.body[p]);
+        let rigid = self.contacts.rigid_of_field.get(field);
+        rigid.is_some_and(Option::is_some)
+    }
+
     /// Walks particle `p` to its element.
     #[inline]
     fn walk(&self, p: usize, x: Vec3, element: &mut u32, crossing: &mut Crossing) {
-        match self.mesh.walk(*element, x) {
-            Some(found) if found == *element => {}
-            Some(found) => {
+        match self.mesh.walk_or_leave(*element, x) {
+            Ok(found) if found == *element => {}
+            Ok(found) => {
                 let field = self.fields.of(self.body[p]);
                 if self.contacts.blocks(field, *element, found) {
                     crossing.passed.note(p);
@@ -164,7 +176,11 @@ impl Search<'_> {
                     crossing.crossed.note(p);
                 }
             }
-            None => crossing.outside.note(p),
+            Err(Some(face)) if self.outflow.lets_out(face) && !self.is_rigid(p) => {
+                *element = NONE;
+                crossing.gone.note(p);
+            }
+            Err(_) => crossing.outside.note(p),
         }
     }
 }
@@ -182,6 +198,7 @@ fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
         gravity,
         fields,
         contacts,
+        outflow,
         simd,
         ..
     } = sim;
@@ -191,6 +208,7 @@ fn move_particles(sim: &mut Simulation, stays: bool) -> Crossing {
         mesh,
         fields,
         contacts,
+        outflow,
         body: &particles.body,
     };
     type Arrays<'a> = ([&'a mut [f64]; 3], &'a mut [u32], &'a [f64]);
@@ -270,6 +288,7 @@ fn locate(sim: &mut Simulation) -> Crossing {
         cells,
         fields,
         contacts,
+        outflow,
         simd,
         ..
     } = sim;
@@ -277,6 +296,7 @@ fn locate(sim: &mut Simulation) -> Crossing {
         mesh: &plan.mesh,
         fields,
         contacts,
+        outflow,
         body: &particles.body,
     };
     let (active, position, simd) = (&*active, particles.position.components(), *simd);
@@ -305,6 +325,10 @@ fn check(sim: &mut Simulation, crossing: Crossing) -> Result<bool, Stop> {
         return Err(sim.left_the_mesh(p));
     }
     let mut crossed = crossing.crossed.get().is_some();
+    if crossing.gone.get().is_some() {
+        sim.let_out()?;
+        crossed = true;
+    }
     if crossing.passed.get().is_some() {
         crossed |= guard::put_back(sim)?;
     }

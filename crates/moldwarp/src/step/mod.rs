@@ -64,8 +64,11 @@ impl Simulation {
         self.profile.lap(Part::Remap);
         strain::run(self);
         self.profile.lap(Part::Strain);
-        stress::run(self);
+        let crushed = stress::run(self);
         self.profile.lap(Part::Stress);
+        if crushed {
+            return Err(self.crushed());
+        }
         advance::run(self)
     }
 
@@ -92,8 +95,11 @@ impl Simulation {
         self.profile.lap(Part::Nodes);
         correction::receive(self, before + after);
         self.profile.lap(Part::Receive);
-        to_particles::run(self, before, after);
+        let kinetic = to_particles::run(self, before, after);
         self.profile.lap(Part::ToParticles);
+        if !kinetic.is_finite() {
+            return Err(self.not_finite());
+        }
         Ok(dt)
     }
 }

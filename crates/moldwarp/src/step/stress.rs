@@ -3,11 +3,11 @@
 use super::{CellStrain, TILES, smoothing};
 use crate::Mat3;
 use crate::lanes::{
-    self, ByTile, LANES, Lane, VoigtLanes, for_each_simd, get, load, load_one, set, store,
+    self, ByTile, LANES, Lane, VoigtLanes, either, for_each_simd, get, load, load_one, set, store,
     store_one, whole,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
-use crate::parallel::fold;
+use crate::parallel::{Smallest, Sum, fold};
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt};
@@ -39,7 +39,8 @@ struct Points {
 /// Works on particles side by side: [elastic, left out by smoothing, plastic], J.
 type Works = [Lane; 3];
 
-pub(super) fn run(sim: &mut Simulation) {
+/// Returns whether a particle has lost all its volume.
+pub(super) fn run(sim: &mut Simulation) -> bool {
     let Simulation {
         plan,
         particles,
@@ -61,13 +62,15 @@ pub(super) fn run(sim: &mut Simulation) {
         &mut particles.volume[..],
     );
     let all = ByTile::new(&active.tiles, arrays, ());
-    let work = fold(all, TILES, &|block: ByTile<Arrays, ()>| {
+    let (work, least) = fold(all, TILES, &|block: ByTile<Arrays, ()>| {
         let first = block.first();
         let tiles = block.each();
         let mut arrays = block.particles;
         let mut side = Side::default();
         let mut points = Points::default();
         let mut works: Works = [[0.0; LANES]; 3];
+        // Volume after the step over that before.
+        let mut least = [f64::INFINITY; LANES];
         for (number, tile) in tiles {
             let own = &strains[number];
             side.smoothed = own.volumetric;
@@ -82,13 +85,18 @@ pub(super) fn run(sim: &mut Simulation) {
                 points.look_up(body, &model, &arrays, start);
                 strain(simd, own, &side, &mut points, &arrays, start, lanes);
                 points.update(simd, body, &model);
-                book(simd, own, &side, &mut points, &mut works, lanes);
+                book(simd, own, &side, &mut points, &mut works, &mut least, lanes);
                 keep(simd, &points, &mut arrays, start, lanes);
             }
         }
-        works.each_ref().map(lanes::sum)
+        let smallest = least
+            .into_iter()
+            .map(Smallest)
+            .fold(Smallest::default(), Sum::plus);
+        (works.each_ref().map(lanes::sum), smallest)
     });
     ledger.particle_stress_work(work);
+    least.0 <= 0.0
 }
 
 impl Default for Side {
@@ -214,6 +222,7 @@ for_each_simd! {
         side: &Side,
         points: &mut Points,
         works: &mut Works,
+        least: &mut Lane,
         lanes: usize,
     ) {
         let increment = &points.increment;
@@ -221,6 +230,7 @@ for_each_simd! {
             let volumetric = own.volumetric[l];
             let left_out = (volumetric - side.smoothed[l]) * (1.0 - points.separated[l]);
             let growth = growth(volumetric - left_out);
+            least[l] = either(growth < least[l], growth, least[l]);
             let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
             let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]));
             let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);

@@ -38,7 +38,8 @@ impl Default for Kick {
     }
 }
 
-pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
+/// Returns the energy of motion of the particles, J.
+pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let h = before + after;
     let Simulation {
         plan,
@@ -95,6 +96,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         kick.energy.each_ref().map(sum_lanes)
     });
     ledger.end_kick(sums, before, after);
+    sums[2]
 }
 
 /// The particles of a slot.

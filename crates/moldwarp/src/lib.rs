@@ -20,6 +20,7 @@ pub mod plan;
 mod query;
 #[cfg(test)]
 mod random;
+pub mod saved;
 mod simulation;
 mod stages;
 pub mod step;

@@ -61,6 +61,11 @@ impl Simulation {
         self.clock.stage_time
     }
 
+    /// Steps since the stage's start.
+    pub fn stage_steps(&self) -> u64 {
+        self.clock.stage_steps
+    }
+
     /// The plan, with the mesh as it is now.
     pub fn plan(&self) -> &Plan {
         &self.plan

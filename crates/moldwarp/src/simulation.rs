@@ -232,8 +232,8 @@ pub struct Simulation {
     pub(crate) simd: Simd,
     pub(crate) profile: Profile,
     /// Nodes before the last renumbering and their keys, kept so that no step allocates.
-    spare_nodes: Vec<Node>,
-    spare_numbers: Vec<u32>,
+    pub(crate) spare_nodes: Vec<Node>,
+    pub(crate) spare_numbers: Vec<u32>,
 }
 
 impl Simulation {

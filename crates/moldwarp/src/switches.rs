@@ -13,6 +13,19 @@ struct Factor {
     over: f64,
 }
 
+crate::saved!(Factor {
+    on,
+    from,
+    to,
+    start,
+    over
+});
+crate::saved!(Switches {
+    boundaries,
+    loads,
+    gravity
+});
+
 impl Factor {
     fn value(&self, time: f64) -> f64 {
         if !self.on {

@@ -34,6 +34,8 @@ pub struct Absorbing {
     of_node: Vec<u32>,
 }
 
+crate::saved!(Absorbing { nodes, of_node });
+
 impl Absorbing {
     /// `material` gives the material next to a face, if there is any.
     pub fn new<'a>(

@@ -28,6 +28,17 @@ pub struct Constraint {
     held: Vec<Held>,
 }
 
+crate::saved!(Held { direction, speed });
+crate::saved!(Constraint { node, free, held });
+crate::saved!(Constraints {
+    all,
+    of_node,
+    functions,
+    values,
+    previous,
+    first,
+});
+
 impl Constraint {
     fn velocity(&self, functions: &[f64]) -> Vec3 {
         let speed = |held: &Held| {

@@ -9,6 +9,8 @@ pub struct Fields {
     count: usize,
 }
 
+crate::saved!(Fields { of_body, count });
+
 impl Default for Fields {
     /// One field for all.
     fn default() -> Fields {

@@ -54,6 +54,21 @@ pub struct Meeting {
     pub friction: Vec3,
 }
 
+crate::saved!(Meeting {
+    slots,
+    contact,
+    normals,
+    count,
+    allowed,
+    area,
+    touching,
+    state,
+    normal,
+    tangential,
+    normal_force,
+    friction,
+});
+
 /// Friction and adhesion of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Strength {

@@ -99,6 +99,22 @@ pub struct Contacts {
     pub masses: Vec<Mass>,
 }
 
+crate::saved!(Contacts {
+    of_fields,
+    first,
+    depth,
+    faces,
+    meetings,
+    structure,
+    projections,
+    meets,
+    tallies,
+    rigid,
+    rigid_before,
+    rigid_of_field,
+    masses,
+});
+
 impl Contacts {
     pub fn new(
         plan: &Plan,

@@ -60,6 +60,12 @@ pub(crate) struct Watch {
     calm_since: Option<f64>,
 }
 
+crate::saved!(Watch {
+    forces,
+    peak,
+    calm_since
+});
+
 impl Watch {
     /// Looks at the step just made. Says whether the model is at rest.
     pub fn look(

@@ -193,6 +193,16 @@ pub struct Ledger {
     turned_over: f64,
 }
 
+crate::saved!(Ledger {
+    now,
+    given,
+    particles,
+    gain,
+    pending_gain,
+    pending_damping,
+    turned_over,
+});
+
 impl Ledger {
     /// The energies now.
     pub fn energies(&self) -> Energies {

@@ -47,6 +47,20 @@ pub struct Probes {
     touching: Vec<Vec<(u32, f64)>>,
 }
 
+crate::saved_enum!(Place {
+    0 => Nodes { nodes, elements },
+    1 => Particles(particles),
+    2 => Body(body),
+    3 => Volume(group),
+});
+crate::saved!(SurfaceNode {
+    node,
+    weight,
+    start,
+    displacement
+});
+crate::saved!(Probes { places, touching });
+
 impl Probes {
     pub(crate) fn new(plan: &Plan, particles: &Particles, order: &Order) -> Probes {
         let place = |probe: &Probe| match probe.target {

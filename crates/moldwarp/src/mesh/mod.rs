@@ -110,6 +110,20 @@ pub struct Mesh {
     pub surfaces: Vec<Surface>,
 }
 
+crate::saved!(Mesh {
+    nodes,
+    tets,
+    gradients,
+    volumes,
+    altitudes,
+    neighbours,
+    node_volumes,
+    node_offsets,
+    node_elements,
+    volume_groups,
+    surfaces,
+});
+
 /// What can be wrong with a mesh. Elements and nodes are numbered from 0 in the order given.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum MeshError {

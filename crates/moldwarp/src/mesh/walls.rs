@@ -18,6 +18,12 @@ pub struct Walls {
     around: Vec<(u32, u32)>,
 }
 
+crate::saved!(Walls {
+    tets,
+    extra,
+    around
+});
+
 impl Walls {
     /// Splits the nodes of these faces. Faces on the outside of the mesh have one side only and
     /// split nothing.

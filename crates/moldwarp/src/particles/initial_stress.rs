@@ -63,6 +63,18 @@ struct Layer {
     overburden: f64,
 }
 
+crate::saved!(Layer {
+    bottom,
+    top,
+    unit_weight,
+    overburden
+});
+crate::saved!(Ground {
+    up,
+    layers,
+    surcharge
+});
+
 impl Ground {
     /// `held` says whether anything holds or loads
     /// a mesh node, so that a face there needs not be the ground's surface.

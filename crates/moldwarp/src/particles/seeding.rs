@@ -113,6 +113,14 @@ pub struct Seed {
     point: u16,
 }
 
+crate::saved!(Seed {
+    id,
+    body,
+    element,
+    along,
+    point
+});
+
 /// The seeds of all bodies that are to have any in the mesh at the start, ordered by element. So every particle has its id
 /// before there is any, whenever its body comes.
 pub fn seeds(

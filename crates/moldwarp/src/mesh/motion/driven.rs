@@ -74,6 +74,14 @@ pub struct Driven {
     altitudes: Vec<f64>,
 }
 
+crate::saved!(Driven {
+    own,
+    carried,
+    direction,
+    zone,
+    altitudes,
+});
+
 impl Driven {
     /// `free` projects a vector into the directions that a node's fixities, rollers and prescribed
     /// velocities leave; nodes that `stays` is true of are held altogether. `holder` names the boundary

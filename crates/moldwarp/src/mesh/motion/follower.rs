@@ -28,6 +28,14 @@ pub struct Follower {
     follows: Vec<Follow>,
 }
 
+crate::saved!(Follow {
+    node,
+    source,
+    motion,
+    normal
+});
+crate::saved!(Follower { follows });
+
 impl Follower {
     /// `surfaces` are the absorbing ones; `free` projects a vector into the directions that a
     /// node's fixities, rollers and prescribed velocities leave. Nodes that are `driven` by a body do

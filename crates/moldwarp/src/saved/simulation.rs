@@ -1,0 +1,223 @@
+//! The whole state, section by section.
+
+use super::{Broken, Saved, load};
+use crate::Vec3;
+use crate::contact::Contacts;
+use crate::lanes::Simd;
+use crate::measure::Profile;
+use crate::particles::{Order, Particles};
+use crate::plan::Plan;
+use crate::simulation::{Cells, Simulation};
+use crate::stages::moduli;
+use crate::step::{Active, Node};
+
+impl Simulation {
+    /// Hands out everything that the simulation needs to go on, in sections with names; the plan is
+    /// not among it.
+    ///
+    /// # Errors
+    ///
+    /// Those of `section`, the first of which is the last call.
+    pub fn save<E>(
+        &self,
+        mut section: impl FnMut(&'static str, &[u8]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Simulation {
+            plan,
+            particles,
+            reserve,
+            // Particles are in order.
+            order: _,
+            walls,
+            fields,
+            contacts,
+            // Numbered from the particles' elements.
+            active: _,
+            nodes,
+            cells,
+            constraints,
+            absorbing,
+            follower,
+            driven,
+            loads,
+            // Of the bodies' materials.
+            elasticity: _,
+            reference,
+            ledger,
+            probes,
+            clock,
+            gravity,
+            switches,
+            watch,
+            scale,
+            simd: _,
+            profile: _,
+            spare_nodes: _,
+            spare_numbers: _,
+        } = self;
+        let materials: Vec<usize> = plan.bodies.iter().map(|b| b.material).collect();
+        let mut bytes = Vec::new();
+        let mut save = |name, values: &dyn Fn(&mut Vec<u8>)| {
+            bytes.clear();
+            values(&mut bytes);
+            section(name, &bytes)
+        };
+        save("clock", &|out| clock.save(out))?;
+        save("particles", &|out| particles.save(out))?;
+        save("mesh nodes", &|out| plan.mesh.nodes.save(out))?;
+        save("materials", &|out| materials.save(out))?;
+        save("reserve", &|out| reserve.save(out))?;
+        save("walls", &|out| walls.save(out))?;
+        save("fields", &|out| fields.save(out))?;
+        save("contacts", &|out| contacts.save(out))?;
+        save("nodes", &|out| nodes.save(out))?;
+        save("cells", &|out| cells.save(out))?;
+        save("constraints", &|out| constraints.save(out))?;
+        save("absorbing", &|out| absorbing.save(out))?;
+        save("follower", &|out| follower.save(out))?;
+        save("driven", &|out| driven.save(out))?;
+        save("loads", &|out| loads.save(out))?;
+        save("reference", &|out| reference.save(out))?;
+        save("ledger", &|out| ledger.save(out))?;
+        save("probes", &|out| probes.save(out))?;
+        save("gravity", &|out| gravity.save(out))?;
+        save("switches", &|out| switches.save(out))?;
+        save("watch", &|out| watch.save(out))?;
+        save("scale", &|out| scale.save(out))
+    }
+
+    /// The simulation that was saved. `plan` is that with which it was set up, but for the ends of
+    /// stages, which may have changed; `section` finds a section by its name.
+    ///
+    /// # Errors
+    ///
+    /// If the sections do not hold a simulation of this plan.
+    pub fn restore<'a>(
+        mut plan: Plan,
+        section: impl Fn(&'static str) -> Option<&'a [u8]>,
+    ) -> Result<Simulation, Broken> {
+        let from = Sections(section);
+        let materials: Vec<usize> = from.load("materials")?;
+        let known = |m: &usize| *m < plan.materials.len();
+        check(
+            "materials",
+            materials.len() == plan.bodies.len() && materials.iter().all(known),
+        )?;
+        for (body, material) in plan.bodies.iter_mut().zip(materials) {
+            body.material = material;
+        }
+        let elasticity = (plan.bodies.iter())
+            .map(|body| moduli(&plan.materials[body.material].model))
+            .collect();
+        move_mesh(&mut plan, from.load("mesh nodes")?)?;
+        let particles: Particles = from.load("particles")?;
+        check_particles(&particles, &plan)?;
+        let contacts: Contacts = from.load("contacts")?;
+        let nodes: Vec<Node> = from.load("nodes")?;
+        let cells: Cells = from.load("cells")?;
+        let mut simulation = Simulation {
+            particles,
+            reserve: from.load("reserve")?,
+            order: Order::default(),
+            walls: from.load("walls")?,
+            fields: from.load("fields")?,
+            contacts: Contacts::default(),
+            active: Active::default(),
+            nodes: Vec::new(),
+            cells: Cells::default(),
+            constraints: from.load("constraints")?,
+            absorbing: from.load("absorbing")?,
+            follower: from.load("follower")?,
+            driven: from.load("driven")?,
+            loads: from.load("loads")?,
+            elasticity,
+            reference: from.load("reference")?,
+            ledger: from.load("ledger")?,
+            probes: from.load("probes")?,
+            clock: from.load("clock")?,
+            gravity: from.load("gravity")?,
+            switches: from.load("switches")?,
+            watch: from.load("watch")?,
+            scale: from.load("scale")?,
+            simd: Simd::default(),
+            profile: Profile::default(),
+            spare_nodes: Vec::new(),
+            spare_numbers: Vec::new(),
+            plan,
+        };
+        simulation.number()?;
+        simulation.take_kick(nodes, cells)?;
+        simulation.contacts = contacts;
+        Ok(simulation)
+    }
+
+    /// Numbers cells and nodes as they were: particles are in order already.
+    fn number(&mut self) -> Result<(), Broken> {
+        let elements = self.plan.mesh.tets.len();
+        self.order.sort(&mut self.particles, elements, &self.fields);
+        let places = self.order.destination.iter().zip(0..);
+        check("particles", places.into_iter().all(|(a, b)| *a == b))?;
+        self.activate();
+        Ok(())
+    }
+
+    /// Takes over what the last kick has left at nodes and in cells.
+    fn take_kick(&mut self, nodes: Vec<Node>, kick: Cells) -> Result<(), Broken> {
+        let count = self.active.elements.len();
+        check("nodes", nodes.len() == self.active.nodes.len())?;
+        check("cells", kick.sums.len() == count)?;
+        check("cells", kick.pairs.len() == count)?;
+        check("cells", kick.stresses.len() == count)?;
+        check("cells", kick.forces.len() == count)?;
+        self.nodes = nodes;
+        // The others have their sizes from the numbering.
+        let Cells {
+            sums,
+            pairs,
+            stresses,
+            forces,
+            ..
+        } = kick;
+        self.cells.sums = sums;
+        self.cells.pairs = pairs;
+        self.cells.stresses = stresses;
+        self.cells.forces = forces;
+        Ok(())
+    }
+}
+
+struct Sections<F>(F);
+
+impl<'a, F: Fn(&'static str) -> Option<&'a [u8]>> Sections<F> {
+    fn load<T: Saved>(&self, name: &'static str) -> Result<T, Broken> {
+        let bytes = (self.0)(name).ok_or_else(|| Broken::new(name))?;
+        load(bytes).map_err(|e| Broken::new(format!("{name}: {}", e.what)))
+    }
+}
+
+fn check(what: &str, right: bool) -> Result<(), Broken> {
+    match right {
+        true => Ok(()),
+        false => Err(Broken::new(what)),
+    }
+}
+
+/// Geometry is always that of the nodes where they are.
+fn move_mesh(plan: &mut Plan, nodes: Vec<Vec3>) -> Result<(), Broken> {
+    check("mesh nodes", nodes.len() == plan.mesh.nodes.len())?;
+    plan.mesh.nodes = nodes;
+    plan.mesh.update_geometry();
+    Ok(())
+}
+
+/// That all particles are in elements of the mesh and of bodies of the plan.
+fn check_particles(particles: &Particles, plan: &Plan) -> Result<(), Broken> {
+    let (count, elements) = (particles.len(), plan.mesh.tets.len());
+    let inside = |e: &u32| (*e as usize) < elements;
+    let known = |b: &u16| usize::from(*b) < plan.bodies.len();
+    let right = particles.element.iter().all(inside) && particles.body.iter().all(known);
+    check(
+        "particles",
+        right && particles.element.len() == count && particles.body.len() == count,
+    )
+}

@@ -1,0 +1,190 @@
+//! What a state is made of, as far as its fields are open; the rest stands beside its structures.
+
+use crate::boundary::{AbsorbingNode, Function, LoadPoint};
+use crate::contact::{Mass, Projections, Rigid, State, Tally};
+use crate::measure::{Energies, Forces, Scale};
+use crate::mesh::{Face, Surface, VolumeGroup};
+use crate::particles::Particles;
+use crate::saved;
+use crate::saved_enum;
+use crate::simulation::{Cells, Clock};
+use crate::step::{CellForce, CellStress, CellSums, Node, Reference};
+
+saved!(Particles {
+    id,
+    body,
+    element,
+    position,
+    velocity,
+    displacement,
+    stress,
+    state,
+    volume,
+    initial_volume,
+    mass,
+});
+
+saved!(Node {
+    mass,
+    velocity,
+    acceleration,
+    received,
+    load,
+    damping,
+    absorbing,
+    reaction,
+    average,
+    grid_velocity,
+    moved,
+    filling,
+    density,
+    weighed,
+    volumetric,
+    mean_stress,
+});
+
+saved!(CellSums {
+    mass,
+    momentum,
+    volume,
+    solid,
+});
+saved!(CellStress {
+    stress,
+    closed,
+    moduli,
+    wave_modulus,
+    reference,
+});
+saved!(CellForce {
+    stress,
+    smoothed,
+    viscous,
+    weighed,
+    filled,
+});
+
+/// The sums and stresses of the last kick; all else is written by each step before it is read.
+impl crate::saved::Saved for Cells {
+    fn save(&self, out: &mut Vec<u8>) {
+        let Cells {
+            sums,
+            pairs,
+            stresses,
+            forces,
+            nodal: _,
+            exchange: _,
+            strains: _,
+            weights: _,
+        } = self;
+        sums.save(out);
+        pairs.save(out);
+        stresses.save(out);
+        forces.save(out);
+    }
+
+    fn load(from: &mut crate::saved::Bytes) -> Result<Cells, crate::saved::Broken> {
+        Ok(Cells {
+            sums: Vec::load(from)?,
+            pairs: Vec::load(from)?,
+            stresses: Vec::load(from)?,
+            forces: Vec::load(from)?,
+            ..Cells::default()
+        })
+    }
+}
+
+saved!(Reference {
+    ground,
+    k0,
+    gravity
+});
+saved!(Clock {
+    time,
+    steps,
+    stage,
+    stage_time,
+    stage_steps,
+    dt,
+    next,
+    new_constraints,
+});
+
+saved!(AbsorbingNode {
+    node,
+    dashpot,
+    spring,
+    displacement,
+    rest,
+});
+saved!(LoadPoint {
+    load,
+    particle,
+    offset,
+    force,
+});
+saved_enum!(Function {
+    0 => Constant,
+    1 => Ramp { duration },
+    2 => Table { points },
+    3 => HalfSine { duration, period, count },
+});
+
+saved_enum!(State {
+    0 => Open,
+    1 => Sliding,
+    2 => Sticking,
+});
+saved!(Tally {
+    normal,
+    tangential,
+    sticking,
+    sliding,
+    open,
+});
+saved!(Projections {
+    count,
+    sum,
+    greatest,
+    work,
+});
+saved!(Rigid {
+    field,
+    mass,
+    before,
+    velocity,
+    free,
+});
+saved!(Mass { inverse, velocity });
+
+saved!(Energies {
+    kinetic,
+    kinetic_grid,
+    elastic,
+    gravity,
+    load,
+    prescribed,
+    plastic,
+    friction,
+    contact,
+    damping,
+    absorbed,
+    removed,
+    transfer,
+    smoothing,
+    integration,
+    advection,
+    residual,
+});
+saved!(Forces {
+    unbalanced,
+    applied
+});
+saved!(Scale {
+    kinetic,
+    travel_time
+});
+
+saved!(Face { element, local });
+saved!(VolumeGroup { name, elements });
+saved!(Surface { name, faces });

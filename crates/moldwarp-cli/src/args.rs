@@ -17,6 +17,10 @@ pub struct Args {
 pub enum Command {
     /// Compute a scene and write its results
     Run(RunArgs),
+    /// Go on with a run that was interrupted, from its last checkpoint, as if it had never stopped
+    ///
+    /// Changed input files do not matter. A run that is over is left as it is.
+    Resume(ResumeArgs),
     /// Say what a run would be: counts, steps, memory, disk, time; writes nothing
     Check(CheckArgs),
     /// Compute a scene once for each value, or each combination of values, of --vary
@@ -58,6 +62,28 @@ pub struct RunArgs {
     /// Replace an unfinished run; write beside files that are not moldwarp's
     #[arg(long)]
     pub force: bool,
+    #[command(flatten)]
+    pub how: HowArgs,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ResumeArgs {
+    /// The folder of the run
+    pub dir: PathBuf,
+    /// Change the end of a stage that is not over, or the output, such as
+    /// stages.loading.duration="2 s" or output.frames=100
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub sets: Vec<String>,
+    /// Number of threads; all cores if not given. The results do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub how: HowArgs,
+}
+
+/// How steps are made.
+#[derive(Debug, ClapArgs)]
+pub struct HowArgs {
     /// Vector instructions to use; the best of this processor if not given. The results do not depend on
     /// them
     #[arg(long, value_parser = PossibleValuesParser::new(Simd::NAMES))]

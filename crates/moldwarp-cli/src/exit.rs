@@ -16,11 +16,16 @@ pub enum Exit {
     /// compressed to degeneracy, there is no stable step, or
     /// the forced one is above it. What was computed is kept, with a last frame and row.
     Guard = 3,
-    /// Reading or writing failed during the run.
+    /// Reading or writing failed during the run, as when a disk is full; `moldwarp resume` goes on from
+    /// the last checkpoint.
     Files = 4,
     /// A stage reached its limit without equilibrium; the run ends there, and what was computed is
     /// kept.
     NotAtRest = 5,
+    /// Interrupted by Ctrl-C (SIGINT) after a step; a checkpoint was written.
+    Interrupted = 130,
+    /// The same by SIGTERM.
+    Terminated = 143,
 }
 
 /// The code of a run that was stopped.
@@ -34,6 +39,14 @@ pub fn of_stop(stop: &Stop) -> Exit {
         | Stop::Motion { .. }
         | Stop::NoRoom { .. }
         | Stop::TimeStep { .. } => Exit::Guard,
+    }
+}
+
+/// The code of a run that was interrupted by this signal.
+pub fn of_signal(signal: usize) -> Exit {
+    match signal as i32 {
+        signal_hook::consts::SIGTERM => Exit::Terminated,
+        _ => Exit::Interrupted,
     }
 }
 

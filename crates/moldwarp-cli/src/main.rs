@@ -6,7 +6,9 @@ mod exit;
 mod new;
 mod progress;
 mod report;
+mod resume;
 mod run;
+mod signals;
 mod sweep;
 mod text;
 
@@ -20,6 +22,7 @@ fn main() -> ExitCode {
     report::install();
     let done = match Args::parse().command {
         Command::Run(args) => run::run(&args),
+        Command::Resume(args) => resume::resume(&args),
         Command::Check(args) => check::check(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::SweepPart(args) => return sweep::part(&args),

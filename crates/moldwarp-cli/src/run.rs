@@ -1,9 +1,9 @@
 //! `moldwarp run`.
 
-use crate::args::{RunArgs, SceneArgs};
-use crate::exit::{Exit, of_stop};
+use crate::args::{HowArgs, RunArgs, SceneArgs};
+use crate::exit::{Exit, of_signal, of_stop};
 use crate::progress::Display;
-use crate::{Failure, say, text};
+use crate::{Failure, say, signals, text};
 use moldwarp::Simd;
 use moldwarp::measure::Energies;
 use moldwarp_io::output::summary::Compared;
@@ -13,41 +13,71 @@ use std::time::Duration;
 
 pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     let (scene, threads) = load(&args.scene)?;
-    let outcome = compute(scene, &options(args, threads)?, &mut Display::new(threads))?;
+    let options = RunOptions {
+        interrupt: signals::watch()?,
+        ..options(args, threads)?
+    };
+    let outcome = compute(scene, &options, &mut Display::new(threads))?;
+    conclude(outcome, args.how.profile)
+}
+
+/// Says how a run has ended.
+pub fn conclude(outcome: Outcome, with_profile: bool) -> Result<Exit, Failure> {
+    if let Some(signal) = outcome.interrupted {
+        eprintln!(
+            "interrupted at step {}, t = {} s; `moldwarp resume {}` goes on from there",
+            outcome.summary.steps,
+            text::number(outcome.summary.time),
+            outcome.folder.path().display()
+        );
+        return Ok(of_signal(signal));
+    }
     say(&conclusion(&outcome));
-    if args.profile {
+    if with_profile {
         say(&profile(&outcome));
     }
-    match outcome.stopped {
-        None => Ok(Exit::Done),
-        Some(stop) => Err(Failure::new(
-            of_stop(&stop),
-            miette::miette!(
-                help = "frames and history up to then are kept",
-                "stopped after {} steps: {stop}",
-                outcome.summary.steps
-            ),
-        )),
-    }
+    let Some(stop) = &outcome.stopped else {
+        return Ok(Exit::Done);
+    };
+    let exit = of_stop(stop);
+    let help = match exit {
+        Exit::NotAtRest => format!(
+            "frames and history up to then are kept; `moldwarp resume {} --set \
+             stages.NAME.duration=…` gives the stage more time",
+            outcome.folder.path().display()
+        ),
+        _ => "frames and history up to then are kept".to_owned(),
+    };
+    let steps = outcome.summary.steps;
+    Err(Failure::new(
+        exit,
+        miette::miette!(help = help, "stopped after {steps} steps: {stop}"),
+    ))
 }
 
 /// How the arguments want the run to be made.
 pub fn options(args: &RunArgs, threads: usize) -> Result<RunOptions, Failure> {
-    let simd = args.simd.as_ref().map(|name| {
-        Simd::named(name)
-            .ok_or_else(|| Failure::input(miette::miette!("this processor does not have {name}")))
-    });
     Ok(RunOptions {
         out: args.out.clone(),
         force: args.force,
         threads,
-        simd: simd.transpose()?,
+        simd: simd(&args.how)?,
+        ..RunOptions::default()
     })
+}
+
+/// The instructions that are asked for.
+pub fn simd(args: &HowArgs) -> Result<Option<Simd>, Failure> {
+    let simd = args.simd.as_ref().map(|name| {
+        Simd::named(name)
+            .ok_or_else(|| Failure::input(miette::miette!("this processor does not have {name}")))
+    });
+    simd.transpose()
 }
 
 /// Sets the threads up and reads the scene. Returns the number of threads beside it.
 pub fn load(args: &SceneArgs) -> Result<(Scene, usize), Failure> {
-    let threads = start_threads(args)?;
+    let threads = start_threads(args.threads)?;
     let mut scene = scene::load(&args.scene, &args.sets).map_err(Failure::input)?;
     if let Some(from) = &args.from {
         scene::inherit(&mut scene, from).map_err(Failure::input)?;
@@ -56,8 +86,8 @@ pub fn load(args: &SceneArgs) -> Result<(Scene, usize), Failure> {
 }
 
 /// Sets the threads up and returns their number.
-pub fn start_threads(args: &SceneArgs) -> Result<usize, Failure> {
-    let wanted = args.threads.map_or(0, usize::from);
+pub fn start_threads(wanted: Option<u16>) -> Result<usize, Failure> {
+    let wanted = wanted.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new()
         .num_threads(wanted)
         .build_global()

@@ -25,7 +25,7 @@ use std::time::Duration;
 
 pub fn sweep(args: &SweepArgs) -> Result<Exit, Failure> {
     let variations = Variation::parse_all(&args.vary, &args.scene.sets).map_err(Failure::input)?;
-    let threads = crate::run::start_threads(&args.scene)?;
+    let threads = crate::run::start_threads(args.scene.threads)?;
     let runs = sweep::runs(&variations);
     let checked = check_all(&args.scene, &runs)?;
     let path = match &args.out {

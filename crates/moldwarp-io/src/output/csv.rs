@@ -3,7 +3,7 @@
 
 use super::FileError;
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -36,6 +36,39 @@ impl Writer {
         writer.put_line()?;
         writer.finish()?;
         Ok(writer)
+    }
+
+    /// Goes on with a file of so many columns after its first `length` bytes; what follows them is cut
+    /// off.
+    pub fn resume(path: &Path, columns: usize, length: u64) -> Result<Writer, FileError> {
+        let open = || {
+            let mut file = File::options().write(true).open(path)?;
+            if file.metadata()?.len() < length {
+                return Err(std::io::Error::other("rows that it had are missing"));
+            }
+            file.set_len(length)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        };
+        let file = open().map_err(FileError::at("go on with", path))?;
+        Ok(Writer {
+            path: path.to_owned(),
+            out: BufWriter::new(file),
+            line: String::new(),
+            columns,
+            flushed: Instant::now(),
+        })
+    }
+
+    /// Brings everything written so far to the disk, beyond the system's own memory. Returns the
+    /// length of the file in bytes.
+    pub fn sync(&mut self) -> Result<u64, FileError> {
+        self.finish()?;
+        let file = self.out.get_ref();
+        file.sync_data()
+            .and_then(|()| file.metadata())
+            .map(|about| about.len())
+            .map_err(FileError::at("write", &self.path))
     }
 
     /// Writes a row, one value a column.

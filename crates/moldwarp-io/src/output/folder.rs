@@ -13,12 +13,17 @@ const LOG: &str = "run.log";
 const FRAMES: &str = "frames";
 /// Particles at the ends of stages, in a folder of their own.
 const STAGES: &str = "stages";
+/// What a run goes on from when it was interrupted, in a folder of its own.
+const CHECKPOINTS: &str = "checkpoints";
+/// Folders in the folder of a run.
+const FOLDERS: [&str; 3] = [FRAMES, STAGES, CHECKPOINTS];
 /// Everything a run writes, by its name in the folder.
-const OURS: [&str; 9] = [
+const OURS: [&str; 10] = [
     SUMMARY,
     LOG,
     FRAMES,
     STAGES,
+    CHECKPOINTS,
     "scene.toml",
     "history.csv",
     "particles.pvd",
@@ -57,6 +62,10 @@ impl FolderError {
     /// What the user can do about it.
     pub fn remedy(&self) -> &'static str {
         match self {
+            FolderError::Unfinished { what: "run", .. } => {
+                "`moldwarp resume DIR` goes on with it; `--force` replaces it; `--out DIR` writes \
+                 somewhere else"
+            }
             FolderError::Unfinished { .. } => {
                 "`--force` replaces it; `--out DIR` writes somewhere else"
             }
@@ -111,13 +120,12 @@ impl Folder {
         let log = path.join(LOG);
         let replaced = log.exists();
         clear(path)?;
-        let frames = path.join(FRAMES);
         fs::create_dir_all(path).map_err(FileError::at("create", path))?;
         // The log first: from here on the folder is known for an unfinished run.
         fs::File::create(&log).map_err(FileError::at("create", &log))?;
-        fs::create_dir_all(&frames).map_err(FileError::at("create", &frames))?;
-        let stages = path.join(STAGES);
-        fs::create_dir_all(&stages).map_err(FileError::at("create", &stages))?;
+        for folder in FOLDERS.map(|name| path.join(name)) {
+            fs::create_dir_all(&folder).map_err(FileError::at("create", &folder))?;
+        }
         Ok((Folder { path: named() }, replaced))
     }
 
@@ -136,11 +144,46 @@ impl Folder {
             clear(path)?;
             fs::remove_file(&log).map_err(FileError::at("remove", &log))?;
         }
-        for folder in [&path.join(FRAMES), &path.join(STAGES), path] {
-            // It fails where something is left, which stays, and where there is no folder.
-            let _ = fs::remove_dir(folder);
+        // It fails where something is left, which stays, and where there is no folder.
+        for folder in FOLDERS {
+            let _ = fs::remove_dir(path.join(folder));
         }
+        let _ = fs::remove_dir(path);
         Ok(())
+    }
+
+    /// The folder of a run that goes on.
+    pub(crate) fn resume(path: &Path) -> Folder {
+        Folder {
+            path: path.to_owned(),
+        }
+    }
+
+    /// Removes all frames but the first `count`.
+    pub(crate) fn remove_frames_from(&self, count: usize) -> Result<(), FileError> {
+        remove_files(&self.path.join(FRAMES), |name| {
+            let number = name.split(['_', '.']).nth(1).and_then(|n| n.parse().ok());
+            number.is_some_and(|n: usize| n >= count)
+        })
+    }
+
+    /// Removes the particles at the ends of stages but the first `count`.
+    pub(crate) fn remove_stages_from(&self, count: usize) -> Result<(), FileError> {
+        remove_files(&self.path.join(STAGES), |name| {
+            let number = name.split('_').next().and_then(|n| n.parse().ok());
+            number.is_some_and(|n: usize| n >= count)
+        })
+    }
+
+    /// Removes what a run that is over does not need any more.
+    pub(crate) fn remove_checkpoints(&self) -> Result<(), FileError> {
+        remove_files(&self.path.join(CHECKPOINTS), |_| true)
+    }
+
+    /// One of the two files that hold checkpoints in turn.
+    pub fn checkpoint(&self, generation: u64) -> PathBuf {
+        let name = format!("{}.checkpoint", generation % 2);
+        self.path.join(CHECKPOINTS).join(name)
     }
 
     pub fn path(&self) -> &Path {
@@ -235,22 +278,29 @@ fn clear(path: &Path) -> Result<(), FileError> {
     if !path.join(LOG).exists() {
         return Ok(());
     }
-    for folder in [FRAMES, STAGES].map(|name| path.join(name)) {
-        if !folder.is_dir() {
-            continue;
-        }
-        for entry in fs::read_dir(&folder).map_err(FileError::at("read", &folder))? {
-            let file = entry.map_err(FileError::at("read", &folder))?.path();
-            if file.extension().is_some_and(|e| e == "vtu" || e == "part") {
-                fs::remove_file(&file).map_err(FileError::at("remove", &file))?;
-            }
-        }
+    for folder in FOLDERS.map(|name| path.join(name)) {
+        remove_files(&folder, |_| true)?;
     }
-    for name in OURS.iter().filter(|n| ![FRAMES, STAGES, LOG].contains(n)) {
+    let files = OURS.iter().filter(|n| !FOLDERS.contains(n) && **n != LOG);
+    for name in files {
         for file in [path.join(name), path.join(format!("{name}.part"))] {
             if file.exists() {
                 fs::remove_file(&file).map_err(FileError::at("remove", &file))?;
             }
+        }
+    }
+    Ok(())
+}
+
+/// Removes files of ours in one of the folders of a run, if there is such a folder: those whose name
+/// is `wanted`.
+fn remove_files(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<(), FileError> {
+    for name in entries(folder)? {
+        let file = folder.join(&name);
+        let of_a_run = |e: &std::ffi::OsStr| e == "vtu" || e == "part" || e == "checkpoint";
+        let ours = file.extension().is_some_and(of_a_run);
+        if ours && wanted(&name.to_string_lossy()) {
+            fs::remove_file(&file).map_err(FileError::at("remove", &file))?;
         }
     }
     Ok(())
@@ -285,8 +335,8 @@ mod tests {
         assert!(prepare(&out, false).unwrap());
         assert_eq!(
             fs::read_dir(&out).unwrap().count(),
-            3,
-            "log, frames and stages"
+            4,
+            "log, frames, stages and checkpoints"
         );
         assert_eq!(fs::read_dir(out.join("frames")).unwrap().count(), 0);
         assert_eq!(fs::read_dir(out.join("stages")).unwrap().count(), 0);

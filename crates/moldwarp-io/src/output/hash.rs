@@ -42,8 +42,13 @@ impl Hasher {
 
     /// Adds a text.
     pub fn text(&mut self, name: &str, text: &str) {
-        self.begin(name, text.len());
-        self.0.update(text.as_bytes());
+        self.bytes(name, text.as_bytes());
+    }
+
+    /// Adds bytes.
+    pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
+        self.begin(name, bytes.len());
+        self.0.update(bytes);
     }
 
     /// The fingerprint in 64 hexadecimal digits.

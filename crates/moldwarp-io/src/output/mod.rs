@@ -1,6 +1,7 @@
 //! Results as files: frames for ParaView, histories, the summary, and the folder they are in.
 
 pub mod compare;
+pub mod container;
 pub mod csv;
 pub mod folder;
 pub mod hash;

@@ -22,10 +22,26 @@ impl Collection {
         }
     }
 
+    /// A collection that goes on after these frames, and is cut off behind them.
+    pub fn resume(path: PathBuf, frames: Vec<(f64, String)>) -> Result<Collection, FileError> {
+        let collection = Collection { path, frames };
+        match collection.is_empty() {
+            false => collection.write()?,
+            true if collection.path.exists() => std::fs::remove_file(&collection.path)
+                .map_err(FileError::at("remove", &collection.path))?,
+            true => {}
+        }
+        Ok(collection)
+    }
+
     /// Adds a frame that has been written: its time in s and its path from the collection's
     /// folder, with `/` between the parts.
     pub fn add(&mut self, time: f64, frame: &str) -> Result<(), FileError> {
         self.frames.push((time, frame.to_owned()));
+        self.write()
+    }
+
+    fn write(&self) -> Result<(), FileError> {
         write_whole(&self.path, |out| {
             writeln!(
                 out,
@@ -40,6 +56,11 @@ impl Collection {
             }
             writeln!(out, "</Collection>\n</VTKFile>")
         })
+    }
+
+    /// Times of the frames so far, s.
+    pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.frames.iter().map(|f| f.0)
     }
 
     /// Number of frames so far.

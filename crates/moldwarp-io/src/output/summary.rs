@@ -28,7 +28,10 @@ pub struct Summary {
     pub steps: u64,
     /// Simulated time, s.
     pub time: f64,
-    /// From the start of the program's run to its end, s.
+    /// Steps from which the run was [resumed](#checkpoints), in order; none if it was made in one go.
+    pub resumed_at: Vec<u64>,
+    /// From the start of the program's run to its end, s; of a run that was resumed that of all its
+    /// parts, up to the checkpoints that they went on from.
     pub wall_time: f64,
     /// Particles times steps over the seconds spent in the step loop alone.
     pub particle_steps_per_second: f64,
@@ -52,10 +55,10 @@ pub struct Summary {
     /// Version of the program.
     pub version: String,
     /// Fingerprint of the resolved plan and mesh, without title, output, comparisons and threads;
-    /// it may change with the version.
+    /// it may change with the version. A run that was resumed keeps that of its beginning.
     pub scene_hash: String,
-    /// Fingerprint of every array of the final state, particles by id: two runs ended the same,
-    /// bit for bit, when it is the same.
+    /// Fingerprint of every array of the final state, all that a [checkpoint](#checkpoints) would hold
+    /// of it, particles by id: two runs ended the same, bit for bit, when it is the same.
     pub state_hash: String,
     /// Each column of the history with its unit.
     #[serde(serialize_with = "in_order")]
@@ -130,6 +133,7 @@ mod tests {
             mass: 20.5,
             steps: 2,
             time: 0.5,
+            resumed_at: vec![1, 2],
             wall_time: 1.0,
             particle_steps_per_second: 16.0,
             min_dt: Some(0.25),

@@ -26,6 +26,26 @@ impl Frames {
         }
     }
 
+    /// Goes on after frames of these times, s; later ones are removed.
+    pub fn resume(folder: &Folder, times: &[f64]) -> Result<Frames, FileError> {
+        let collection = |kind: &str| {
+            let names = (0..).map(|number| Folder::frame(kind, number));
+            let frames = times.iter().copied().zip(names).collect();
+            Collection::resume(folder.collection(kind), frames)
+        };
+        folder.remove_frames_from(times.len())?;
+        Ok(Frames {
+            folder: folder.clone(),
+            particles: collection("particles")?,
+            mesh: collection("mesh")?,
+        })
+    }
+
+    /// Times of the frames so far, s.
+    pub fn times(&self) -> Vec<f64> {
+        self.particles.times().collect()
+    }
+
     pub fn folder(&self) -> &Folder {
         &self.folder
     }

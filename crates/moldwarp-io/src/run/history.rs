@@ -86,13 +86,15 @@ impl Expected {
         compare.iter().map(|c| Expected::read(c, columns)).collect()
     }
 
+    fn find(compare: &Compare, columns: &[(String, String)]) -> Result<usize, RunError> {
+        let column = columns.iter().position(|c| c.0 == compare.column);
+        column.ok_or_else(|| RunError::NoSuchColumn {
+            column: compare.column.clone(),
+        })
+    }
+
     fn read(compare: &Compare, columns: &[(String, String)]) -> Result<Expected, RunError> {
-        let column = columns
-            .iter()
-            .position(|c| c.0 == compare.column)
-            .ok_or_else(|| RunError::NoSuchColumn {
-                column: compare.column.clone(),
-            })?;
+        let column = Expected::find(compare, columns)?;
         let table = csv::read(&compare.file)?;
         let [times, values, ..] = &table.columns[..] else {
             return Err(RunError::OneColumn {
@@ -117,6 +119,31 @@ impl Expected {
             reference,
             seen: Vec::new(),
         })
+    }
+
+    /// The names of the files and what they say, by which [`Expected::again`] finds them later.
+    pub fn references(all: &[Expected]) -> Vec<(String, Vec<(f64, f64)>)> {
+        let reference = |e: &Expected| (e.file.clone(), e.reference.clone());
+        all.iter().map(reference).collect()
+    }
+
+    /// The comparisons with references that have been read before.
+    pub fn again(
+        compare: &[Compare],
+        columns: &[(String, String)],
+        references: Vec<(String, Vec<(f64, f64)>)>,
+    ) -> Result<Vec<Expected>, RunError> {
+        let pairs = compare.iter().zip(references);
+        let pair = pairs.map(|(compare, (file, reference))| {
+            Ok(Expected {
+                column: Expected::find(compare, columns)?,
+                name: compare.column.clone(),
+                file,
+                reference,
+                seen: Vec::new(),
+            })
+        });
+        pair.collect()
     }
 
     /// How far the history was from what was expected; a problem as a sentence.
@@ -154,6 +181,34 @@ impl History {
             row: Vec::new(),
             expected,
         })
+    }
+
+    /// Goes on after the first `length` bytes of the file.
+    pub fn resume(
+        folder: &Folder,
+        columns: &[(String, String)],
+        mut expected: Vec<Expected>,
+        length: u64,
+    ) -> Result<History, RunError> {
+        let path = folder.history();
+        let writer = Writer::resume(&path, columns.len(), length)?;
+        if !expected.is_empty() {
+            let rows = csv::read(&path)?;
+            for expected in &mut expected {
+                let (times, values) = (&rows.columns[0], &rows.columns[expected.column]);
+                expected.seen = times.iter().copied().zip(values.iter().copied()).collect();
+            }
+        }
+        Ok(History {
+            writer,
+            row: Vec::new(),
+            expected,
+        })
+    }
+
+    /// Brings all rows to the disk. Returns the length of the file in bytes.
+    pub fn sync(&mut self) -> Result<u64, FileError> {
+        self.writer.sync()
     }
 
     /// Adds the simulation as it is now.

@@ -1,14 +1,21 @@
 //! A run: from a checked scene to its folder of results.
 
+mod checkpoint;
 mod frames;
 mod history;
+mod interrupt;
 mod log;
 mod recorder;
+mod resume;
 mod schedule;
 mod stage_files;
 mod state;
+mod steps;
 mod whole;
 
+pub use checkpoint::CheckpointError;
+pub use interrupt::Interrupt;
+pub use resume::resume;
 pub use state::state_hash;
 
 pub(crate) use frames::frame_bytes;
@@ -18,6 +25,7 @@ pub(crate) use frames::{Field, NODE_FIELDS, PARTICLE_FIELDS};
 pub(crate) use history::FIRST;
 pub(crate) use history::{Expected, columns};
 pub(crate) use stage_files::StageFile;
+pub(crate) use steps::end_time;
 pub(crate) use whole::factor as whole_factor;
 
 use crate::mesh::describe_quality;
@@ -25,14 +33,15 @@ use crate::output::csv::CsvError;
 use crate::output::hash::scene_hash;
 use crate::output::{FileError, Folder, FolderError, Projected, Summary, write_whole};
 use crate::scene::{Origin, Scene, SceneError};
+use checkpoint::{Beginning, Checkpoints, Course};
 use log::Log;
 use moldwarp::measure::{Energies, Profile};
-use moldwarp::plan::Until;
 use moldwarp::{Plan, Simd, Simulation, Stop};
 use recorder::Recorder;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use steps::{Books, Ended, Pace, steps};
 
 /// How a scene is run; nothing here changes what is computed.
 #[derive(Clone, Debug, Default)]
@@ -45,6 +54,8 @@ pub struct RunOptions {
     pub threads: usize,
     /// Instructions to compute with; the best of this processor if not given.
     pub simd: Option<Simd>,
+    /// Asks the run to stop.
+    pub interrupt: Interrupt,
 }
 
 /// How far a run is.
@@ -59,7 +70,7 @@ pub struct Progress {
     pub time_step: f64,
     /// Particles times steps per second of the step loop.
     pub rate: f64,
-    /// Wall time since the loop's start.
+    /// Wall time since the loop's start, with that of earlier parts of a run that was resumed.
     pub elapsed: Duration,
 }
 
@@ -107,6 +118,8 @@ pub struct Outcome {
     pub energies: Energies,
     /// The guard that stopped it, if one did.
     pub stopped: Option<Stop>,
+    /// The signal that interrupted it, if one did: there is a checkpoint, but no summary yet.
+    pub interrupted: Option<usize>,
     pub profile: Profile,
     /// Comparisons that could not be made, a sentence each.
     pub problems: Vec<String>,
@@ -136,20 +149,43 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy()))]
     Folder(#[from] FolderError),
+    #[error("{} holds no run of moldwarp", .0.display())]
+    #[diagnostic(help("name the folder that a run has written, the one with its run.log"))]
+    NoRun(PathBuf),
+    #[error("the run in {} is over", .0.display())]
+    #[diagnostic(help(
+        "run the scene again with what you want to change; `--from OUT@STAGE` begins with the end of one \
+         of its stages"
+    ))]
+    Over(PathBuf),
+    #[error("the run in {} is going on", .0.display())]
+    #[diagnostic(help("wait for it, or interrupt it with Ctrl-C where it runs"))]
+    AtWork(PathBuf),
+    #[error(transparent)]
+    #[diagnostic(help("{}", .0.remedy()))]
+    Checkpoint(#[from] CheckpointError),
     /// During the run.
     #[error(transparent)]
     File(#[from] FileError),
+    /// The same where there is a checkpoint.
+    #[error("{error}")]
+    #[diagnostic(help(
+        "make room for its files; then `moldwarp resume {}` goes on from step {step}",
+        .folder.display()
+    ))]
+    Cut {
+        error: FileError,
+        folder: PathBuf,
+        step: u64,
+    },
 }
 
 impl RunError {
     /// Whether the input or the arguments are wrong, so that the run never began.
     pub fn is_input(&self) -> bool {
-        !matches!(self, RunError::File(_))
+        !matches!(self, RunError::File(_) | RunError::Cut { .. })
     }
 }
-
-/// Observers are called this often.
-const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Computes a scene and writes its results. Nothing is created if the scene, a reference or the
 /// folder is refused.
@@ -168,6 +204,7 @@ pub fn run(
     }
     let title = scene.plan.title.clone();
     let scene_hash = scene_hash(&scene.plan);
+    let mesh = scene.plan.mesh.clone();
     let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
     if let Some(simd) = options.simd {
         sim.use_simd(simd);
@@ -181,6 +218,7 @@ pub fn run(
         notes.push(format!("the earlier run in {} is replaced", path.display()));
     }
     let mut log = Log::create(&folder.log(), start)?;
+    log.is_alone();
     log.line(&format!("moldwarp {}", env!("CARGO_PKG_VERSION")))?;
     log.line(&format!("scene {scene_hash}, {} threads", options.threads))?;
     notes.iter().try_for_each(|note| log.line(note))?;
@@ -188,36 +226,88 @@ pub fn run(
         log.line(&format!("mesh: {line}"))?;
     }
     write_whole(&folder.scene(), |out| out.write_all(scene.text.as_bytes()))?;
-    let end = end_time(&sim);
-    let mut recorder = Recorder::new(&scene.output, end, &folder, &columns, expected)?;
-    let mut pace = Pace::default();
-    observer.begin(&sim, &folder, &notes);
-    let stopped = steps(&mut sim, &mut recorder, &mut log, &mut pace, observer);
-    observer.end();
-    let stopped = stopped?;
-
-    let (compare, problems) = recorder.compared();
-    problems.iter().try_for_each(|problem| log.line(problem))?;
-    let summary = Summary {
+    let beginning = Beginning {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
         case: scene.case,
-        title,
+        text: scene.text,
         from: scene.earlier.map(|earlier| earlier.given),
-        exit: stopped.as_ref().map_or("done".into(), Stop::to_string),
-        wall_time: start.elapsed().as_secs_f64(),
+        scene_hash,
+        references: Expected::references(&expected),
+    };
+    let interval = scene.output.checkpoints;
+    let checkpoints = Checkpoints::new(&folder, (&beginning, &mesh), 0, interval, start);
+    drop(mesh);
+    let end = end_time(&sim);
+    let books = Books {
+        recorder: Recorder::new(&scene.output, end, &folder, &columns, expected)?,
+        log,
+        course: Course::default(),
+        checkpoints,
+    };
+    observer.begin(&sim, &folder, &notes);
+    let about = (beginning, title, columns);
+    conclude(sim, books, about, &folder, options, observer)
+}
+
+/// Makes the steps that are left and what comes after them.
+fn conclude(
+    mut sim: Simulation,
+    mut books: Books,
+    (beginning, title, columns): (Beginning, String, Vec<(String, String)>),
+    folder: &Folder,
+    options: &RunOptions,
+    observer: &mut dyn Observer,
+) -> Result<Outcome, RunError> {
+    let ended = steps(&mut sim, &mut books, &options.interrupt, observer);
+    observer.end();
+    let ended = ended.map_err(|error| match books.checkpoints.last_step() {
+        Some(step) => RunError::Cut {
+            error,
+            folder: folder.path().to_owned(),
+            step,
+        },
+        None => RunError::File(error),
+    })?;
+    let (stopped, interrupted) = match ended {
+        Ended::Done => (None, None),
+        Ended::Stopped(stop) => (Some(stop), None),
+        Ended::Interrupted(signal) => (None, Some(signal)),
+    };
+    let (compare, problems) = books.recorder.compared();
+    let exit = match (&stopped, interrupted) {
+        (None, None) => "done".to_owned(),
+        (Some(stop), _) => stop.to_string(),
+        (None, Some(signal)) => format!("interrupted by signal {signal}"),
+    };
+    let (course, log) = (&books.course, &mut books.log);
+    let summary = Summary {
+        case: beginning.case,
+        title,
+        from: beginning.from,
+        exit,
+        resumed_at: course.resumed_at.clone(),
+        wall_time: course.earlier + books.checkpoints.elapsed(),
         compare,
         threads: options.threads,
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        scene_hash,
+        scene_hash: beginning.scene_hash,
         units: columns,
-        ..computed(&sim, &pace)
+        ..computed(&sim, &course.pace)
     };
     log.line(&format!("{} at step {}", summary.exit, summary.steps))?;
-    summary.write(&folder.summary())?;
+    if interrupted.is_none() {
+        problems.iter().try_for_each(|problem| log.line(problem))?;
+        summary.write(&folder.summary())?;
+    }
+    if summary.exit == "done" {
+        folder.remove_checkpoints()?;
+    }
     Ok(Outcome {
-        folder,
+        folder: folder.clone(),
         summary,
         energies: whole::energies(&sim),
         stopped,
+        interrupted,
         profile: sim.profile().clone(),
         problems,
     })
@@ -265,97 +355,5 @@ fn computed(sim: &Simulation, pace: &Pace) -> Summary {
         foreign_particles: sim.foreign_particles(),
         state_hash: state_hash(sim),
         ..Summary::default()
-    }
-}
-
-/// The step loop. A guard that stops it is no error: what was computed until then is kept.
-fn steps(
-    sim: &mut Simulation,
-    recorder: &mut Recorder,
-    log: &mut Log,
-    pace: &mut Pace,
-    observer: &mut dyn Observer,
-) -> Result<Option<Stop>, FileError> {
-    let start = Instant::now();
-    let mut shown = start;
-    let mut stage = None;
-    recorder.record(sim)?;
-    while !sim.finished() {
-        if stage != Some(sim.stage()) {
-            stage = Some(sim.stage());
-            let name = &sim.plan().stages[sim.stage()].name;
-            log.line(&format!("stage `{name}` begins at {} s", sim.time()))?;
-        }
-        let begun = Instant::now();
-        let particles = sim.particles().len();
-        let mut stage_file = Ok(());
-        let step = sim.step_and(|sim| stage_file = stage_files::write(sim, recorder.folder()));
-        let now = Instant::now();
-        stage_file?;
-        if let Err(stop) = step {
-            recorder.record_last(sim)?;
-            return Ok(Some(stop));
-        }
-        pace.add(now - begun, particles, sim.time_step());
-        recorder.record(sim)?;
-        if now - shown >= PROGRESS_INTERVAL {
-            shown = now;
-            observer.progress(&Progress {
-                time: sim.time(),
-                end: end_time(sim),
-                step: sim.steps(),
-                time_step: sim.time_step(),
-                rate: pace.rate(),
-                elapsed: now - start,
-            });
-        }
-    }
-    recorder.record_last(sim)?;
-    Ok(None)
-}
-
-/// When the run will end, s; stages given in steps are taken to go on with the coming step.
-pub(crate) fn end_time(sim: &Simulation) -> f64 {
-    let left = sim.plan().stages.iter().enumerate().skip(sim.stage());
-    left.fold(sim.time(), |end, (number, stage)| {
-        let whole = match stage.until {
-            Until::Duration(duration)
-            | Until::Equilibrium {
-                limit: duration, ..
-            } => duration,
-            Until::Steps(steps) => steps as f64 * sim.next_time_step(),
-        };
-        let done = if number == sim.stage() {
-            sim.stage_time()
-        } else {
-            0.0
-        };
-        end + (whole - done).max(0.0)
-    })
-}
-
-/// What the step loop has done.
-#[derive(Debug, Default)]
-struct Pace {
-    particle_steps: f64,
-    seconds: f64,
-    /// Least and greatest step, s.
-    bounds: Option<[f64; 2]>,
-}
-
-impl Pace {
-    fn add(&mut self, spent: Duration, particles: usize, time_step: f64) {
-        self.particle_steps += particles as f64;
-        self.seconds += spent.as_secs_f64();
-        let [low, high] = self.bounds.unwrap_or([time_step; 2]);
-        self.bounds = Some([low.min(time_step), high.max(time_step)]);
-    }
-
-    fn rate(&self) -> f64 {
-        if self.seconds > 0.0 {
-            self.particle_steps / self.seconds
-        } else {
-            0.0
-        }
     }
 }

@@ -1,5 +1,6 @@
 //! What is written during a run, and when.
 
+use super::RunError;
 use super::frames::Frames;
 use super::history::{Expected, History};
 use super::schedule::Schedule;
@@ -20,6 +21,26 @@ pub(super) struct Recorder {
     last: [Option<u64>; 2],
 }
 
+/// What a recorder has to remember to go on.
+#[derive(Debug)]
+pub(super) struct Recorded {
+    frame_schedule: Option<Schedule>,
+    history_schedule: Option<Schedule>,
+    /// Times of the frames, s.
+    frames: Vec<f64>,
+    /// Length of the history in bytes.
+    history: u64,
+    last: [Option<u64>; 2],
+}
+
+moldwarp::saved!(Recorded {
+    frame_schedule,
+    history_schedule,
+    frames,
+    history,
+    last,
+});
+
 impl Recorder {
     /// Gets the files going for a run that ends at `end`, s.
     pub fn new(
@@ -35,6 +56,46 @@ impl Recorder {
             frames: Frames::new(folder),
             history: History::create(folder, columns, expected)?,
             last: [None; 2],
+        })
+    }
+
+    /// Goes on from what was recorded; all that was written later is cut off. `changed` are other
+    /// settings than before of frames and history, from now on, for a run that now ends at `end`, s.
+    pub fn resume(
+        recorded: Recorded,
+        changed: [Option<Every>; 2],
+        (now, end): (f64, f64),
+        folder: &Folder,
+        columns: &[(String, String)],
+        expected: Vec<Expected>,
+    ) -> Result<Recorder, RunError> {
+        let go_on = |before: Option<Schedule>, changed: Option<Every>| match changed {
+            None => before,
+            Some(every) => {
+                let mut new = schedule(every, end);
+                if let Some(new) = &mut new {
+                    new.due(now);
+                }
+                new
+            }
+        };
+        Ok(Recorder {
+            frame_schedule: go_on(recorded.frame_schedule, changed[0]),
+            history_schedule: go_on(recorded.history_schedule, changed[1]),
+            frames: Frames::resume(folder, &recorded.frames)?,
+            history: History::resume(folder, columns, expected, recorded.history)?,
+            last: recorded.last,
+        })
+    }
+
+    /// Brings the history to the disk, and says how to go on from here.
+    pub fn recorded(&mut self) -> Result<Recorded, FileError> {
+        Ok(Recorded {
+            frame_schedule: self.frame_schedule,
+            history_schedule: self.history_schedule,
+            frames: self.frames.times(),
+            history: self.history.sync()?,
+            last: self.last,
         })
     }
 

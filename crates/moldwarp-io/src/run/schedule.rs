@@ -10,6 +10,8 @@ pub(crate) struct Schedule {
     next: u64,
 }
 
+moldwarp::saved!(Schedule { interval, next });
+
 impl Schedule {
     /// One output every `interval` s from 0 on.
     pub fn every(interval: f64) -> Schedule {

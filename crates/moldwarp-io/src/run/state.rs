@@ -3,12 +3,24 @@
 use crate::output::Hasher;
 use moldwarp::Simulation;
 use moldwarp::material::STATE_SIZE;
-use moldwarp::measure::Energies;
 use moldwarp::particles::Particles;
+use std::convert::Infallible;
 
-/// Fingerprint of every array of the state, particles in the order of their ids: two runs ended
-/// the same, bit for bit, when it is the same.
+/// Fingerprint of every array of the state, all that a checkpoint holds of it, with particles in the
+/// order of their ids: two runs ended the same, bit for bit, when it is the same.
 pub fn state_hash(sim: &Simulation) -> String {
+    let mut h = Hasher::new();
+    particles(&mut h, sim.particles());
+    let Ok(()) = sim.save(|name, bytes| {
+        if name != "particles" {
+            h.bytes(name, bytes);
+        }
+        Ok::<(), Infallible>(())
+    });
+    h.finish()
+}
+
+fn particles(h: &mut Hasher, particles: &Particles) {
     // Taken apart, so that an array added to the particles is not forgotten here.
     let Particles {
         id,
@@ -22,11 +34,10 @@ pub fn state_hash(sim: &Simulation) -> String {
         volume,
         initial_volume,
         mass,
-    } = sim.particles();
+    } = particles;
     let mut order: Vec<usize> = (0..id.len()).collect();
     order.sort_unstable_by_key(|&p| id[p]);
     let by_id = || order.iter().copied();
-    let mut h = Hasher::new();
     h.numbers("id", by_id().map(|p| id[p].into()));
     h.numbers("body", by_id().map(|p| body[p].into()));
     h.numbers("element", by_id().map(|p| element[p].into()));
@@ -42,15 +53,95 @@ pub fn state_hash(sim: &Simulation) -> String {
     h.floats("volume", by_id().map(|p| volume[p]));
     h.floats("initial_volume", by_id().map(|p| initial_volume[p]));
     h.floats("mass", by_id().map(|p| mass[p]));
-    let nodes = sim.node_fields();
-    h.vectors("node position", sim.mesh().nodes.iter().copied());
-    h.vectors("node velocity", nodes.velocity.iter().copied());
-    h.floats("node mass", nodes.mass.iter().copied());
-    h.vectors("node reaction", nodes.reaction.iter().copied());
-    for (name, energy) in Energies::NAMES.into_iter().zip(sim.energies().values()) {
-        h.floats(name, [energy].into_iter());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldwarp::saved::{Saved, load};
+
+    const SCENE: &str = include_str!("../../../../examples/absorbing-column/scene.toml");
+
+    /// A short run of the column, which has loads, an absorbing boundary and probes.
+    fn column() -> Simulation {
+        let dir = tempfile::tempdir().unwrap();
+        let mesh = "box = { size = [0.1, 0.1, 0.4], cells = [1, 1, 4] }";
+        let scene: String = SCENE
+            .lines()
+            .map(|line| match line.split_once(" = ") {
+                Some(("file", _)) => mesh,
+                _ => line,
+            })
+            .map(|line| format!("{line}\n"))
+            .collect();
+        let groups = [
+            ("volume = \"soil\"", "volume = \"box\""),
+            ("\"bottom\"", "\"z-min\""),
+            ("\"top\"", "\"z-max\""),
+        ];
+        let scene = groups.iter().fold(scene, |s, (a, b)| s.replace(a, b));
+        let path = dir.path().join("scene.toml");
+        std::fs::write(&path, scene).unwrap();
+        let scene = crate::scene::load(&path, &[]).unwrap();
+        let mut sim = Simulation::new(scene.plan).unwrap();
+        (0..20).for_each(|_| sim.step().unwrap());
+        sim
     }
-    h.floats("time", [sim.time()].into_iter());
-    h.numbers("steps", [sim.steps()].into_iter());
-    h.finish()
+
+    fn hash(particles: &Particles) -> String {
+        let mut h = Hasher::new();
+        super::particles(&mut h, particles);
+        h.finish()
+    }
+
+    /// One bit in any array of the particles, at its beginning, middle or end.
+    #[test]
+    fn a_flipped_bit_of_a_particle_gives_another_hash() {
+        let sim = column();
+        let mut bytes = Vec::new();
+        sim.particles().save(&mut bytes);
+        let (whole, count) = (hash(sim.particles()), bytes.len());
+        let mut flipped = 0;
+        // A stride that shares no factor with the sizes of numbers hits every array and every bit.
+        for bit in (0..8 * count).step_by(1021) {
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            // In a length it makes arrays that do not belong together, or nothing at all.
+            if let Ok(particles) = load::<Particles>(&bytes) {
+                assert_ne!(hash(&particles), whole, "bit {bit} of {}", 8 * count);
+                flipped += 1;
+            }
+            bytes[bit / 8] ^= 1 << (bit % 8);
+        }
+        assert!(flipped > 200, "{flipped}");
+    }
+
+    /// The same of all else that is kept.
+    #[test]
+    fn a_flipped_bit_of_any_section_gives_another_hash() {
+        let sim = column();
+        let of = |flip: Option<(&str, usize)>| {
+            let mut h = Hasher::new();
+            let Ok(()) = sim.save(|name, bytes| {
+                let mut bytes = bytes.to_vec();
+                if let Some((_, bit)) = flip.filter(|f| f.0 == name) {
+                    bytes[bit / 8] ^= 1 << (bit % 8);
+                }
+                h.bytes(name, &bytes);
+                Ok::<(), Infallible>(())
+            });
+            h.finish()
+        };
+        let whole = of(None);
+        let mut sections = Vec::new();
+        let Ok(()) = sim.save(|name, bytes| {
+            sections.push((name, 8 * bytes.len()));
+            Ok::<(), Infallible>(())
+        });
+        assert!(sections.len() > 20);
+        for (name, bits) in sections {
+            for bit in [0, bits / 2, bits - 1] {
+                assert_ne!(of(Some((name, bit))), whole, "bit {bit} of {name}");
+            }
+        }
+    }
 }

@@ -14,6 +14,7 @@ mod earlier;
 mod error;
 mod functions;
 mod initial_stress;
+mod kept;
 mod loads;
 mod materials;
 mod mesh;
@@ -40,6 +41,7 @@ mod values;
 pub use earlier::{Earlier, inherit};
 pub(crate) use error::Fault;
 pub use error::SceneError;
+pub(crate) use kept::{Kept, check_end, kept};
 pub(crate) use origin::Origin;
 pub use output::{Compare, Every, OutputSettings};
 pub(crate) use overrides::{keys, no_path, value};
@@ -48,7 +50,7 @@ pub use quantity::{Dimension, QuantityError, parse as parse_quantity};
 #[cfg(test)]
 pub(crate) use {quantity::dimensions, unsupported::later};
 
-use moldwarp::{Particles, Plan};
+use moldwarp::{Mesh, Particles, Plan};
 use presence::Presence;
 use raw::RawScene;
 use std::path::{Path, PathBuf};
@@ -70,7 +72,7 @@ pub struct Scene {
     pub text: String,
     /// What the user should know though it is no error.
     pub notes: Vec<String>,
-    /// The mesh file's tags of the elements, in their order; none if the mesh was generated.
+    /// The mesh file's tags of the elements, in their order; none if the mesh was generated or kept.
     pub element_tags: Vec<u64>,
     /// The earlier run from which bodies have their particles, if there is one.
     pub earlier: Option<Earlier>,
@@ -140,7 +142,8 @@ fn read(
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),
     };
-    match syntax::parse(text).and_then(|raw| check(&raw, file, folder, text)) {
+    let read = syntax::parse(text).and_then(|raw| check(&raw, case(file), folder, text, None));
+    match read {
         Ok(mut scene) => {
             scene.origin.name = name;
             scene.origin.overrides = overrides;
@@ -202,14 +205,25 @@ fn unreadable(name: &str, path: &Path, error: &std::io::Error) -> SceneError {
     fault.without_file()
 }
 
-fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Scene, Fault> {
+/// `kept` is the mesh, if it is not to be read or made but has been before; then no other file is
+/// looked for either.
+fn check(
+    raw: &RawScene,
+    case: String,
+    folder: PathBuf,
+    text: &str,
+    kept: Option<Mesh>,
+) -> Result<Scene, Fault> {
     let mut notes = Vec::new();
-    let case = case(file);
+    let files = kept.is_none().then_some(&*folder);
     let gravity = values::vector("gravity", &raw.gravity, Dimension::Acceleration)?;
     let numerics = numerics::numerics(&raw.numerics)?;
     let output = output::output(&raw.output)?;
     let materials = materials::materials(&raw.materials)?;
-    let (mesh, element_tags) = mesh::mesh(&raw.mesh, &folder, &mut notes)?;
+    let (mesh, element_tags) = match kept {
+        Some(mesh) => (mesh, Vec::new()),
+        None => mesh::mesh(&raw.mesh, &folder, &mut notes)?,
+    };
     let symmetry = symmetry::symmetry(raw, &mesh, gravity, &mut notes)?;
     let bodies = bodies::bodies(&raw.bodies, &mesh, &materials)?;
     let motion = raw.mesh_motion.as_ref();
@@ -239,7 +253,7 @@ fn check(raw: &RawScene, file: &Path, folder: PathBuf, text: &str) -> Result<Sce
     notes.extend(presence.notes());
     let raw_bodies = raw.bodies.0.iter().map(|b| &b.1);
     let initial_stress = initial_stress::initial_stress(raw.initial_stress.as_ref(), raw_bodies)?;
-    let compare = output::compare(&raw.compare, (&probes, &contacts), &folder)?;
+    let compare = output::compare(&raw.compare, (&probes, &contacts), files)?;
     for (m, material) in materials.iter().enumerate() {
         let later = stages.iter().flat_map(|s| &s.materials).any(|c| c.1 == m);
         if !later && !bodies.iter().any(|b| b.material == m) {

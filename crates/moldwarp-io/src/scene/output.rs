@@ -26,6 +26,8 @@ pub struct OutputSettings {
     pub frames: Every,
     /// Rows of the history.
     pub history: Every,
+    /// Wall time between checkpoints, s.
+    pub checkpoints: f64,
 }
 
 impl Default for OutputSettings {
@@ -33,6 +35,7 @@ impl Default for OutputSettings {
         OutputSettings {
             frames: Every::Count(50),
             history: Every::Count(1000),
+            checkpoints: 300.0,
         }
     }
 }
@@ -61,6 +64,10 @@ pub(super) fn output(raw: &RawOutput) -> Result<OutputSettings, Fault> {
             ("history_interval", &raw.history_interval),
             default.history,
         )?,
+        checkpoints: match &raw.checkpoint_interval {
+            Some(interval) => positive("checkpoint_interval", interval, Dimension::Time)?,
+            None => default.checkpoints,
+        },
     })
 }
 
@@ -83,17 +90,18 @@ fn every(
     }
 }
 
+/// `folder` is that of the scene; without one its files have been read before and are not looked for.
 pub(super) fn compare(
     raw: &[RawCompare],
     (probes, contacts): (&[Probe], &[Contact]),
-    folder: &Path,
+    folder: Option<&Path>,
 ) -> Result<Vec<Compare>, Fault> {
     let columns = columns(probes, contacts);
     raw.iter()
         .map(|raw| {
             check_column(&raw.column, &columns)?;
-            let file = folder.join(raw.file.get_ref());
-            if !file.is_file() {
+            let file = folder.unwrap_or(Path::new("")).join(raw.file.get_ref());
+            if folder.is_some() && !file.is_file() {
                 return Err(
                     Fault::new(format!("there is no file `{}`", raw.file.get_ref()))
                         .at(raw.file.span(), "no such file")

@@ -85,7 +85,7 @@ fn set(root: &mut Item, option: &str, entry: &str) -> Result<Override, Fault> {
 }
 
 /// The path's keys and the value.
-fn split(entry: &str) -> Result<(Vec<String>, Value), Fault> {
+pub(super) fn split(entry: &str) -> Result<(Vec<String>, Value), Fault> {
     let how = "write --set PATH=VALUE, for example --set numerics.courant=0.4";
     let (path, text) = entry
         .split_once('=')

@@ -711,6 +711,11 @@ pub(super) struct RawOutput {
     /// type: time > 0
     /// default: –
     pub history_interval: Option<RawAmount>,
+    /// Wall time between [checkpoints](output.md#checkpoints). There is one before the first step and
+    /// at the end of each stage, whatever this is.
+    /// type: time > 0
+    /// default: 5 min
+    pub checkpoint_interval: Option<RawAmount>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,7 +1,7 @@
 //! What the scene format has a name for but this version cannot compute.
 
 /// Keys, each with one that stands beside it: the same word elsewhere is just unknown.
-const KEYS: [(&str, &str); 1] = [("checkpoint_interval", "frames")];
+const KEYS: [(&str, &str); 0] = [];
 
 /// Boundaries.
 pub(super) const BOUNDARIES: [&str; 1] = ["outflow"];

@@ -359,9 +359,9 @@ fn numerics_stages_output() {
         case("negative frames", "frames = 50", "frames = -1"),
         case("no history", "history = 1000", "history = 0"),
         case(
-            "checkpoints",
+            "checkpoints all the time",
             "history = 1000",
-            "checkpoint_interval = \"5 min\"",
+            "checkpoint_interval = \"0 min\"",
         ),
         case(
             "misspelt column",

@@ -1,0 +1,275 @@
+//! Checkpoints: files from which a run goes on.
+//!
+//! Each holds everything: the scene's text, the mesh as the run began, references of comparisons,
+//! what was recorded, and the state. The plan is made again from text and mesh by the ordinary
+//! reader; the state is that of [`Simulation::save`]. There are two files that are written in turn,
+//! so that while one is written, and should it be damaged later, there is the one before.
+
+use super::recorder::{Recorded, Recorder};
+use super::steps::Pace;
+use crate::output::container::{self, Damage};
+use crate::output::{FileError, Folder};
+use moldwarp::saved::{Broken, Saved, load};
+use moldwarp::{Mesh, Simulation};
+use std::time::{Duration, Instant};
+
+/// What a run began with and keeps.
+#[derive(Clone, Debug)]
+pub(super) struct Beginning {
+    /// Of the program: another one may read the scene differently, or compute other bits.
+    pub version: String,
+    pub case: String,
+    /// The scene as run.
+    pub text: String,
+    /// `OUT@STAGE`, if bodies are as an earlier run left them.
+    pub from: Option<String>,
+    pub scene_hash: String,
+    /// What comparisons are made with: names of files, times and values.
+    pub references: Vec<(String, Vec<(f64, f64)>)>,
+}
+
+moldwarp::saved!(Beginning {
+    version,
+    case,
+    text,
+    from,
+    scene_hash,
+    references,
+});
+
+/// How a run has gone so far, beside its simulation.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Course {
+    /// Steps from which it was resumed.
+    pub resumed_at: Vec<u64>,
+    pub pace: Pace,
+    /// Wall time of the processes before this one, s.
+    pub earlier: f64,
+}
+
+moldwarp::saved!(Course {
+    resumed_at,
+    pace,
+    earlier
+});
+
+/// Writes checkpoints of a run.
+#[derive(Debug)]
+pub(super) struct Checkpoints {
+    folder: Folder,
+    /// What is the same in all of them.
+    beginning: Vec<u8>,
+    mesh: Vec<u8>,
+    generation: u64,
+    interval: Duration,
+    start: Instant,
+    /// When the last one was written, and after how many steps.
+    last: Option<(Instant, u64)>,
+}
+
+impl Checkpoints {
+    /// Of a process that has begun at `start`; `mesh` is that of the beginning, and the first checkpoint
+    /// has number `generation`. `interval` is in s.
+    pub fn new(
+        folder: &Folder,
+        (beginning, mesh): (&Beginning, &Mesh),
+        generation: u64,
+        interval: f64,
+        start: Instant,
+    ) -> Checkpoints {
+        let mut bytes = [Vec::new(), Vec::new()];
+        beginning.save(&mut bytes[0]);
+        mesh.save(&mut bytes[1]);
+        let [beginning, mesh] = bytes;
+        Checkpoints {
+            folder: folder.clone(),
+            beginning,
+            mesh,
+            generation,
+            interval: Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX),
+            start,
+            last: None,
+        }
+    }
+
+    /// Wall time of this process, s.
+    pub fn elapsed(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// Whether it is time for the next one.
+    pub fn due(&self, now: Instant) -> bool {
+        self.last.is_none_or(|last| now - last.0 >= self.interval)
+    }
+
+    /// The number of steps at the last one, if there is any.
+    pub fn last_step(&self) -> Option<u64> {
+        self.last.map(|last| last.1)
+    }
+
+    /// Writes one, unless the last is of this step.
+    pub fn write(
+        &mut self,
+        sim: &Simulation,
+        course: &Course,
+        recorder: &mut Recorder,
+    ) -> Result<(), FileError> {
+        if self.last_step() == Some(sim.steps()) {
+            return Ok(());
+        }
+        let mut course = course.clone();
+        course.earlier += self.elapsed();
+        let mut run = Vec::new();
+        self.generation.save(&mut run);
+        sim.stage().save(&mut run);
+        course.save(&mut run);
+        recorder.recorded()?.save(&mut run);
+        let path = self.folder.checkpoint(self.generation);
+        container::write(&path, |sections| {
+            sections.add("run", &run)?;
+            sections.add("beginning", &self.beginning)?;
+            sections.add("mesh", &self.mesh)?;
+            sim.save(|name, bytes| sections.add(name, bytes))
+        })?;
+        self.generation += 1;
+        self.last = Some((Instant::now(), sim.steps()));
+        Ok(())
+    }
+}
+
+/// A checkpoint that has been read.
+#[derive(Debug)]
+pub(super) struct Checkpoint {
+    bytes: Vec<u8>,
+    pub generation: u64,
+    /// Number of stages that are over.
+    pub stage: usize,
+    pub course: Course,
+    pub recorded: Recorded,
+    pub beginning: Beginning,
+}
+
+/// Why there is none to go on from.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    #[error("{} holds no checkpoint", .0.display())]
+    None(std::path::PathBuf),
+    #[error("there is no checkpoint in {} that can be used: {problems}", .folder.display())]
+    Unusable {
+        folder: std::path::PathBuf,
+        problems: String,
+    },
+    #[error("the run was made by moldwarp {theirs}, and this is {}", env!("CARGO_PKG_VERSION"))]
+    Version { theirs: String },
+    /// The file is whole, but this program makes nothing of it.
+    #[error("the checkpoint is not of this version of moldwarp: {0}")]
+    Broken(#[from] Broken),
+}
+
+impl CheckpointError {
+    /// What the user can do about it.
+    pub(super) fn remedy(&self) -> &'static str {
+        match self {
+            CheckpointError::None(_) => {
+                "a run has one once its first step is about to be made: run the scene again"
+            }
+            CheckpointError::Unusable { .. } => "run the scene again, with `--force`",
+            CheckpointError::Version { .. } | CheckpointError::Broken(_) => {
+                "results could not be the same bit for bit: resume it with the version that made it, or \
+                 run the scene again with `--force`"
+            }
+        }
+    }
+}
+
+impl Checkpoint {
+    /// The newest one in a folder, and what is wrong with those that cannot be used.
+    pub fn newest(folder: &Folder) -> Result<(Checkpoint, Vec<String>), CheckpointError> {
+        let (mut newest, mut problems): (Option<Checkpoint>, _) = (None, Vec::new());
+        for path in [0, 1].map(|generation| folder.checkpoint(generation)) {
+            let read = match std::fs::read(&path) {
+                Err(e) if e.kind() == std::io::ErrorKind::NotFound => continue,
+                Err(e) => Err(e.to_string()),
+                Ok(bytes) => match Checkpoint::new(bytes) {
+                    Ok(read) => Ok(read),
+                    Err(Unread::Damage(damage)) => Err(damage.to_string()),
+                    Err(Unread::Broken(broken)) => return Err(broken.into()),
+                },
+            };
+            match read {
+                Ok(read)
+                    if newest
+                        .as_ref()
+                        .is_none_or(|n| n.generation < read.generation) =>
+                {
+                    newest = Some(read);
+                }
+                Ok(_) => {}
+                Err(problem) => {
+                    problems.push(format!("{} cannot be used: {problem}", path.display()));
+                }
+            }
+        }
+        match newest {
+            Some(newest) if newest.beginning.version != env!("CARGO_PKG_VERSION") => {
+                Err(CheckpointError::Version {
+                    theirs: newest.beginning.version,
+                })
+            }
+            Some(newest) => Ok((newest, problems)),
+            None if problems.is_empty() => Err(CheckpointError::None(folder.path().to_owned())),
+            None => Err(CheckpointError::Unusable {
+                folder: folder.path().to_owned(),
+                problems: problems.join("; "),
+            }),
+        }
+    }
+
+    fn new(bytes: Vec<u8>) -> Result<Checkpoint, Unread> {
+        let sections = container::read(&bytes)?;
+        let run = find(&sections, "run")?;
+        let (generation, (stage, (course, recorded))) =
+            load::<(u64, (usize, (Course, Recorded)))>(run)?;
+        let beginning = load(find(&sections, "beginning")?)?;
+        Ok(Checkpoint {
+            generation,
+            stage,
+            course,
+            recorded,
+            beginning,
+            bytes,
+        })
+    }
+
+    /// The mesh as the run began.
+    pub fn mesh(&self) -> Result<Mesh, CheckpointError> {
+        Ok(load(self.section("mesh").unwrap_or_default())?)
+    }
+
+    /// A section of the state.
+    pub fn section(&self, name: &str) -> Option<&[u8]> {
+        find(&container::sections(&self.bytes).ok()?, name).ok()
+    }
+}
+
+enum Unread {
+    Damage(Damage),
+    Broken(Broken),
+}
+
+impl From<Damage> for Unread {
+    fn from(damage: Damage) -> Unread {
+        Unread::Damage(damage)
+    }
+}
+
+impl From<Broken> for Unread {
+    fn from(broken: Broken) -> Unread {
+        Unread::Broken(broken)
+    }
+}
+
+fn find<'a>(sections: &[(&str, &'a [u8])], name: &str) -> Result<&'a [u8], Broken> {
+    let section = sections.iter().find(|s| s.0 == name);
+    section.map(|s| s.1).ok_or_else(|| Broken::new(name))
+}

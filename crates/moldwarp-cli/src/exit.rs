@@ -14,7 +14,8 @@ pub enum Exit {
     /// A guard stopped the run: a particle left the mesh, an element turned over, a body was to be
     /// added where another one is, a particle passed a face of a contact, a moving mesh was
     /// compressed to degeneracy, there is no stable step, or
-    /// the forced one is above it. What was computed is kept, with a last frame and row.
+    /// the forced one is above it. What was computed is kept, with a last row, a frame of the
+    /// faulty state, and the last checkpoint.
     Guard = 3,
     /// Reading or writing failed during the run, as when a disk is full; `moldwarp resume` goes on from
     /// the last checkpoint.

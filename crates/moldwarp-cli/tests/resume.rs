@@ -101,6 +101,8 @@ fn interrupt(bench: &Bench, signal: &str) -> i32 {
     let endless = ["--set", "stages.loading.duration=10 h"];
     let mut child = start(bench, &[&["run", "column"][..], &endless].concat());
     wait_for(&bench.path("out/column/history.csv"), 1);
+    let said = bench.fails(2, &["resume", "out/column"]);
+    assert!(said.contains("the run in out/column is going on"), "{said}");
     let mut kill = std::process::Command::new("kill");
     assert!(
         kill.args([signal, &child.id().to_string()])
@@ -328,35 +330,77 @@ fn of_a_damaged_checkpoint_the_one_before_serves() {
     assert!(said.contains("there is no checkpoint in"), "{said}");
 }
 
+/// A guard leaves the last good checkpoint and a frame of the faulty state. To go on from there comes to
+/// the same end.
+#[test]
+fn a_guard_leaves_a_checkpoint_and_a_frame_of_what_was_wrong() {
+    let bench = Bench::with(&COLUMN.replace(
+        "duration = \"0.2 s\"",
+        "duration = \"0.2 s\"\ninitial_velocity.layer = [0, 0, 9]",
+    ));
+    let said = bench.fails(3, &["run", "column", "--out", "whole"]);
+    assert!(said.contains("left the mesh"), "{said}");
+    let times = |out: &str| -> Vec<f64> {
+        let pvd = bench.read(&format!("{out}/particles.pvd"));
+        let times = pvd.split("timestep=\"").skip(1);
+        times
+            .map(|t| t.split('"').next().unwrap().parse().unwrap())
+            .collect()
+    };
+    let (frames, end) = (
+        times("whole"),
+        bench.summary("whole")["time"].as_f64().unwrap(),
+    );
+    assert!(frames.is_sorted_by(|a, b| a < b), "{frames:?}");
+    assert!(*frames.last().unwrap() > end, "the step that went wrong");
+    assert!(bench.path("whole/checkpoints/0.checkpoint").exists());
+
+    bench.fails(3, &["run", "column"]);
+    let again = bench.fails(3, &["resume", "out/column"]);
+    let stopped = |said: &str| said.split("stopped after").nth(1).unwrap().to_owned();
+    assert_eq!(stopped(&said), stopped(&again));
+    let [mut whole, mut own] = ["whole", "out/column"].map(|out| results(&bench, out));
+    [&mut whole, &mut own].map(|all| all.retain(|f| !f.0.starts_with("checkpoints")));
+    assert!(whole == own);
+    let hash = |out: &str| bench.summary(out)["state_hash"].clone();
+    assert_eq!(hash("whole"), hash("out/column"));
+}
+
+/// Rows of every step of a small column: a history that grows beyond anything else that is written.
+const ROWS: [&str; 4] = [
+    "--set",
+    "output.history_interval=0.1 ms",
+    "--set",
+    "mesh.box.cells=[1, 1, 5]",
+];
+
+/// A shell in the bench's folder in which `$0 $@` is `moldwarp run column` with [`ROWS`].
+#[cfg(unix)]
+fn shell(bench: &Bench, wrap: &[&str], script: &str) -> std::process::Output {
+    let words = [wrap, &["sh", "-c", script]].concat();
+    let mut shell = std::process::Command::new(words[0]);
+    shell.args(&words[1..]);
+    shell
+        .args([env!("CARGO_BIN_EXE_moldwarp"), "run", "column"])
+        .args(ROWS);
+    shell.current_dir(bench.path("")).env("NO_COLOR", "1");
+    shell.output().unwrap()
+}
+
 /// Where files cannot grow any more the run ends with code 4 and says what to do; with more room it
 /// goes on.
 #[cfg(unix)]
 #[test]
-fn a_full_disk_ends_the_run_with_a_checkpoint_to_go_on_from() {
+fn a_limit_of_files_ends_the_run_with_a_checkpoint_to_go_on_from() {
     let bench = bench();
-    let rows = [
-        "--set",
-        "output.history_interval=0.1 ms",
-        "--set",
-        "mesh.box.cells=[1, 1, 5]",
-    ];
-    undisturbed(&bench, &rows);
+    undisturbed(&bench, &ROWS);
     let longest = std::fs::metadata(bench.path("whole/history.csv"))
         .unwrap()
         .len();
     // Blocks of 512 bytes in dash, of 1024 in bash: less than the history in either.
     let blocks = longest / 2500;
     let limit = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
-    let program = env!("CARGO_BIN_EXE_moldwarp");
-    let mut shell = std::process::Command::new("sh");
-    shell
-        .args(["-c", &limit, program, "run", "column"])
-        .args(rows);
-    let output = shell
-        .current_dir(bench.path(""))
-        .env("NO_COLOR", "1")
-        .output()
-        .unwrap();
+    let output = shell(&bench, &[], &limit);
     let said = String::from_utf8(output.stderr).unwrap();
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     assert_eq!(output.status.code(), Some(4), "{said}");
@@ -364,14 +408,48 @@ fn a_full_disk_ends_the_run_with_a_checkpoint_to_go_on_from() {
         said.contains("cannot write out/column/history.csv"),
         "{said}"
     );
-    assert!(
-        said.contains("`moldwarp resume out/column` goes on from step "),
-        "{said}"
-    );
+    let what_to_do = "`moldwarp resume out/column` goes on from step ";
+    assert!(said.contains(what_to_do), "{said}");
     bench.done(&["resume", "out/column"]);
     assert_same(&bench, "out/column");
     let resumed = bench.summary("out/column")["resumed_at"][0]
         .as_u64()
         .unwrap();
+    assert!(resumed > 0, "it did not start over");
+}
+
+/// The same on a disk that is really full, where such a small one may be mounted: in a namespace of its
+/// own, so that nothing is left of it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_the_run_with_a_checkpoint_to_go_on_from() {
+    let bench = bench();
+    std::fs::create_dir(bench.path("out")).unwrap();
+    let apart = ["unshare", "--map-root-user", "--mount"];
+    let mount = "mount -t tmpfs -o size=500k none out";
+    let may = std::process::Command::new(apart[0])
+        .args(&apart[1..])
+        .args(["sh", "-c", mount])
+        .current_dir(bench.path(""))
+        .output();
+    if !may.is_ok_and(|m| m.status.success()) {
+        eprintln!("not tested: no file system can be mounted here");
+        return;
+    }
+    undisturbed(&bench, &ROWS);
+    let script = format!(
+        "{mount}; \"$0\" \"$@\"; echo $?; ls out/column/checkpoints; \
+         mount -o remount,size=50m out; \"$0\" resume out/column; cp -r out/column kept"
+    );
+    let output = shell(&bench, &apart, &script);
+    let said =
+        String::from_utf8(output.stdout).unwrap() + &String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("No space left on device"), "{said}");
+    assert!(
+        said.starts_with("4\n0.checkpoint\n1.checkpoint\n"),
+        "{said}"
+    );
+    assert_same(&bench, "kept");
+    let resumed = bench.summary("kept")["resumed_at"][0].as_u64().unwrap();
     assert!(resumed > 0, "it did not start over");
 }

@@ -42,6 +42,13 @@ impl FileError {
     }
 }
 
+/// Brings a file to the disk, beyond the system's own memory.
+pub(crate) fn sync(path: &Path) -> Result<(), FileError> {
+    let file = std::fs::File::options().append(true).open(path);
+    file.and_then(|file| file.sync_all())
+        .map_err(FileError::at("write", path))
+}
+
 /// Writes a file beside its place and renames it there, so that a reader, or a run that is cut
 /// off, finds either the old file or the new one and never a part.
 pub(crate) fn write_whole(

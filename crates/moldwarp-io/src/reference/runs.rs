@@ -32,9 +32,8 @@ fn run_everything(folder: &Folder) {
     scene.extend(toml::from_str::<toml::Table>(EVERYTHING).unwrap());
     let options = RunOptions {
         out: Some(folder.out()),
-        force: false,
         threads: 1,
-        simd: None,
+        ..RunOptions::default()
     };
     run(folder.read(&scene).unwrap(), &options, &mut ()).unwrap();
 }
@@ -74,7 +73,10 @@ fn files(out: &Path) -> Vec<String> {
         names.collect()
     };
     let mut files = names(out);
-    files.retain(|name| !["frames", "stages"].contains(&&name[..]));
+    files.retain(|name| !["frames", "stages", "checkpoints"].contains(&&name[..]));
+    // Not of a run that is over.
+    assert_eq!(names(&out.join("checkpoints")), [""; 0]);
+    files.extend([0, 1].map(|k| format!("checkpoints/{k}.checkpoint")));
     let stages = names(&out.join("stages")).into_iter();
     files.extend(stages.map(|name| format!("stages/{}", name.replace("few-steps", "STAGE"))));
     let frames = names(&out.join("frames")).into_iter();

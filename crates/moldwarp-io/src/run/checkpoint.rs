@@ -273,3 +273,46 @@ fn find<'a>(sections: &[(&str, &'a [u8])], name: &str) -> Result<&'a [u8], Broke
     let section = sections.iter().find(|s| s.0 == name);
     section.map(|s| s.1).ok_or_else(|| Broken::new(name))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{RunOptions, run};
+    use std::sync::atomic::Ordering;
+
+    /// The checkpoint before the first step of a small run.
+    fn checkpoint() -> Vec<u8> {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("scene.toml");
+        std::fs::write(&path, crate::run::state::tests::SCENE).unwrap();
+        let options = RunOptions {
+            out: Some(dir.path().join("out")),
+            ..RunOptions::default()
+        };
+        options.interrupt.signal().store(2, Ordering::Relaxed);
+        let scene = crate::scene::load(&path, &[]).unwrap();
+        let outcome = run(scene, &options, &mut ()).unwrap();
+        assert_eq!((outcome.interrupted, outcome.summary.steps), (Some(2), 0));
+        std::fs::read(outcome.folder.checkpoint(0)).unwrap()
+    }
+
+    /// At both ends and in the middle of each section, and at regular places all over the file.
+    #[test]
+    fn a_flipped_bit_anywhere_is_noticed() {
+        let mut bytes = checkpoint();
+        let start = bytes.as_ptr() as usize;
+        let sections = container::sections(&bytes).unwrap();
+        assert!(sections.len() > 20);
+        let places = sections.iter().flat_map(|(_, section)| {
+            let first = section.as_ptr() as usize - start;
+            [first, first + section.len() / 2, first + section.len() - 1]
+        });
+        let places: Vec<usize> = places.chain((0..bytes.len()).step_by(997)).collect();
+        assert!(Checkpoint::new(bytes.clone()).is_ok());
+        for place in places {
+            bytes[place] ^= 1 << (place % 8);
+            assert!(Checkpoint::new(bytes.clone()).is_err(), "byte {place}");
+            bytes[place] ^= 1 << (place % 8);
+        }
+    }
+}

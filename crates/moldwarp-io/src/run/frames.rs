@@ -2,12 +2,13 @@
 
 use crate::output::pvd::Collection;
 use crate::output::vtu::{self, Array, Data, Texts};
-use crate::output::{FileError, Folder};
+use crate::output::{FileError, Folder, sync};
 use moldwarp::NodeFields;
 use moldwarp::material::StateField;
 use moldwarp::particles::Particles;
 use moldwarp::tensor::Voigt;
 use moldwarp::{Simulation, Vec3, tensor};
+use std::path::PathBuf;
 
 /// Writes frames of the particles and of the mesh into a folder.
 #[derive(Debug)]
@@ -15,6 +16,8 @@ pub(crate) struct Frames {
     folder: Folder,
     particles: Collection,
     mesh: Collection,
+    /// Files that may not have reached the disk yet, beyond the system's own memory.
+    fresh: Vec<PathBuf>,
 }
 
 impl Frames {
@@ -23,6 +26,7 @@ impl Frames {
             folder: folder.clone(),
             particles: Collection::new(folder.collection("particles")),
             mesh: Collection::new(folder.collection("mesh")),
+            fresh: Vec::new(),
         }
     }
 
@@ -38,6 +42,7 @@ impl Frames {
             folder: folder.clone(),
             particles: collection("particles")?,
             mesh: collection("mesh")?,
+            fresh: Vec::new(),
         })
     }
 
@@ -55,15 +60,28 @@ impl Frames {
         self.particles.len()
     }
 
-    /// Writes the simulation as it is now.
-    pub fn write(&mut self, sim: &Simulation) -> Result<(), FileError> {
+    /// Writes the simulation as it is now, at `time`, s.
+    pub fn write(&mut self, sim: &Simulation, time: f64) -> Result<(), FileError> {
         let number = self.len();
         let particles = Folder::frame("particles", number);
-        write_particles(sim, &self.folder.path().join(&particles), &[], &[])?;
-        self.particles.add(sim.time(), &particles)?;
         let mesh = Folder::frame("mesh", number);
-        write_mesh(sim, &self.folder.path().join(&mesh))?;
-        self.mesh.add(sim.time(), &mesh)
+        let [of_particles, of_mesh] = [&particles, &mesh].map(|f| self.folder.path().join(f));
+        write_particles(sim, time, &of_particles, &[], &[])?;
+        self.particles.add(time, &particles)?;
+        write_mesh(sim, time, &of_mesh)?;
+        self.mesh.add(time, &mesh)?;
+        self.fresh.extend([of_particles, of_mesh]);
+        Ok(())
+    }
+
+    /// Brings all frames to the disk.
+    pub fn sync(&mut self) -> Result<(), FileError> {
+        if self.fresh.is_empty() {
+            return Ok(());
+        }
+        let collections = ["particles", "mesh"].map(|kind| self.folder.collection(kind));
+        self.fresh.extend(collections);
+        self.fresh.drain(..).try_for_each(|path| sync(&path))
     }
 }
 
@@ -169,6 +187,7 @@ pub(crate) const NODE_FIELDS: [Field<OfNodes>; 3] = [
 /// Writes the fields above, those of the models, and `more`.
 pub(super) fn write_particles(
     sim: &Simulation,
+    time: f64,
     path: &std::path::Path,
     more: &[Array],
     texts: &[Texts],
@@ -191,7 +210,7 @@ pub(super) fn write_particles(
         .map(|(field, values)| Array::new(field.name, Data::F64(values), field.unit));
     let fields: Vec<Array> = own.chain(of_models).chain(more.iter().copied()).collect();
     let positions: Vec<Vec3> = p.position.iter().collect();
-    vtu::write_points(path, sim.time(), &positions, &fields, texts)
+    vtu::write_points(path, time, &positions, &fields, texts)
 }
 
 /// The state variables of all models by name; 0 for particles of models that have none of a name.
@@ -220,11 +239,11 @@ fn state_fields(sim: &Simulation) -> Vec<(StateField, Vec<f64>)> {
         .collect()
 }
 
-fn write_mesh(sim: &Simulation, path: &std::path::Path) -> Result<(), FileError> {
+fn write_mesh(sim: &Simulation, time: f64, path: &std::path::Path) -> Result<(), FileError> {
     let nodes = sim.node_fields();
     let fields = NODE_FIELDS.map(|f| Array::new(f.name, (f.values)(&nodes), f.label));
     let mesh = sim.mesh();
-    vtu::write_mesh(path, sim.time(), &mesh.nodes, &mesh.tets, &fields)
+    vtu::write_mesh(path, time, &mesh.nodes, &mesh.tets, &fields)
 }
 
 /// p = −tr σ / 3, Pa.

@@ -88,8 +88,9 @@ impl Recorder {
         })
     }
 
-    /// Brings the history to the disk, and says how to go on from here.
+    /// Brings frames and history to the disk, and says how to go on from here.
     pub fn recorded(&mut self) -> Result<Recorded, FileError> {
+        self.frames.sync()?;
         Ok(Recorded {
             frame_schedule: self.frame_schedule,
             history_schedule: self.history_schedule,
@@ -112,6 +113,28 @@ impl Recorder {
         Ok(())
     }
 
+    /// Writes the state in which a step has stopped that began at `begun`, s, and was to take `step`, s.
+    /// Where the clock has not gone on, positions and stresses have.
+    pub fn record_fault(
+        &mut self,
+        sim: &Simulation,
+        begun: f64,
+        step: f64,
+    ) -> Result<(), FileError> {
+        if self.frame_schedule.is_some() {
+            let time = if sim.time() > begun {
+                sim.time()
+            } else {
+                begun + step
+            };
+            self.frames.write(sim, time)?;
+        }
+        if self.last[1] != Some(sim.steps()) {
+            self.row(sim)?;
+        }
+        self.history.finish()
+    }
+
     /// Writes the end, unless it is written already.
     pub fn record_last(&mut self, sim: &Simulation) -> Result<(), FileError> {
         if self.frame_schedule.is_some() && self.last[0] != Some(sim.steps()) {
@@ -129,7 +152,7 @@ impl Recorder {
 
     fn frame(&mut self, sim: &Simulation) -> Result<(), FileError> {
         self.last[0] = Some(sim.steps());
-        self.frames.write(sim)
+        self.frames.write(sim, sim.time())
     }
 
     fn row(&mut self, sim: &Simulation) -> Result<(), FileError> {

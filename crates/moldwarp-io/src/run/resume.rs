@@ -73,12 +73,10 @@ pub fn resume(
         options.threads
     ))?;
     remove(&folder.summary())?;
-    if beginning.text != scene.text {
-        beginning.text = scene.text;
-        write_whole(&folder.scene(), |out| {
-            out.write_all(beginning.text.as_bytes())
-        })?;
-    }
+    beginning.text = scene.text;
+    write_whole(&folder.scene(), |out| {
+        out.write_all(beginning.text.as_bytes())
+    })?;
     let other = |now, before| (now != before).then_some(now);
     let recorder = Recorder::resume(
         checkpoint.recorded,

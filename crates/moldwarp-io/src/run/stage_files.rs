@@ -6,7 +6,7 @@
 use super::frames::write_particles;
 use crate::output::vtu::{Array, Data, Texts};
 use crate::output::vtu_read::{Frame, VtuError, read};
-use crate::output::{FileError, Folder};
+use crate::output::{FileError, Folder, sync};
 use moldwarp::material::State;
 use moldwarp::particles::{Particles, Vectors};
 use moldwarp::{Simulation, Vec3};
@@ -37,12 +37,10 @@ pub(super) fn write(sim: &Simulation, folder: &Folder) -> Result<(), FileError> 
     let more: Vec<Array> = (EXTRA.iter().zip(extra))
         .map(|((name, unit), values)| Array::new(name, Data::F64(values), unit))
         .collect();
-    write_particles(
-        sim,
-        &folder.path().join(Folder::stage(number, &stage[0])),
-        &more,
-        &texts.map(|(name, values)| Texts { name, values }),
-    )
+    let path = folder.path().join(Folder::stage(number, &stage[0]));
+    let texts = texts.map(|(name, values)| Texts { name, values });
+    write_particles(sim, sim.time(), &path, &more, &texts)?;
+    sync(&path)
 }
 
 /// A body of a stage file.

@@ -104,13 +104,17 @@ pub(super) fn steps(
             return Ok(Ended::Interrupted(signal));
         }
         let (begun, particles, stage) = (Instant::now(), sim.particles().len(), sim.stage());
+        let (time, dt) = (sim.time(), sim.next_time_step());
         let mut stage_file = Ok(());
         let folder = books.recorder.folder();
         let step = sim.step_and(|sim| stage_file = stage_files::write(sim, folder));
         let now = Instant::now();
         stage_file?;
         if let Err(stop) = step {
-            books.recorder.record_last(sim)?;
+            match stop {
+                Stop::NotAtRest { .. } => books.recorder.record_last(sim)?,
+                _ => books.recorder.record_fault(sim, time, dt)?,
+            }
             return Ok(Ended::Stopped(stop));
         }
         (books.course.pace).add(now - begun, particles, sim.time_step());

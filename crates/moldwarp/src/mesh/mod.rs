@@ -11,6 +11,7 @@ mod locate;
 mod motion;
 mod quality;
 mod revolve;
+mod saved;
 mod topology;
 mod walls;
 
@@ -109,20 +110,6 @@ pub struct Mesh {
     pub volume_groups: Vec<VolumeGroup>,
     pub surfaces: Vec<Surface>,
 }
-
-crate::saved!(Mesh {
-    nodes,
-    tets,
-    gradients,
-    volumes,
-    altitudes,
-    neighbours,
-    node_volumes,
-    node_offsets,
-    node_elements,
-    volume_groups,
-    surfaces,
-});
 
 /// What can be wrong with a mesh. Elements and nodes are numbered from 0 in the order given.
 #[derive(Debug, thiserror::Error, PartialEq)]

@@ -1,5 +1,7 @@
 //! Runs that are cut off and go on, bit for bit.
 
+#![cfg(unix)] // signals
+
 mod common;
 
 use common::{Bench, COLUMN};
@@ -10,7 +12,7 @@ use std::time::{Duration, Instant};
 /// A column with two stages and a comparison that writes checkpoints whenever it can.
 fn bench() -> Bench {
     let stages = "name = \"loading\"\nduration = \"30 ms\"\n\n[[stages]]\nname = \"swinging\"\n\
-                  steps = 2000\nreset = [\"displacement\"]\n\n[[compare]]\n\
+                  steps = 5000\nreset = [\"displacement\"]\n\n[[compare]]\n\
                   column = \"bottom.displacement.z\"\nfile = \"expected.csv\"\n";
     let scene = COLUMN
         .replace("cells = [1, 1, 5]", "cells = [2, 2, 10]")
@@ -27,8 +29,15 @@ fn bench() -> Bench {
 /// A run that nothing disturbs, for comparison.
 fn undisturbed(bench: &Bench, args: &[&str]) {
     let run = ["run", "column", "--out", "whole"];
-    let rarely = ["--set", "output.checkpoint_interval=1 h"];
-    bench.done(&[&run[..], &rarely, args].concat());
+    bench.done(&[&run[..], &RARELY, args].concat());
+}
+
+/// For what is not to be waited for.
+const RARELY: [&str; 2] = ["--set", "output.checkpoint_interval=1 h"];
+
+/// Goes on to the end.
+fn resume(bench: &Bench) {
+    bench.done(&[&["resume", "out/column"][..], &RARELY].concat());
 }
 
 /// All files of a run's results below its folder, without what tells of times and places.
@@ -134,18 +143,16 @@ fn a_run_that_is_killed_goes_on_as_if_it_had_not_been() {
     let mut random = Random(8);
     let mut child = start(&bench, &["run", "column"]);
     wait_for(&bench.path("out/column/history.csv"), 2);
-    let mut kills = 0;
-    while kills < 20 {
+    for kill in 0..20 {
+        if kill > 0 {
+            child = start(&bench, &["resume", "out/column"]);
+        }
         std::thread::sleep(Duration::from_micros(random.below(60_000)));
         child.kill().unwrap();
-        if child.wait().unwrap().code() == Some(0) {
-            break;
-        }
-        kills += 1;
-        child = start(&bench, &["resume", "out/column"]);
+        let code = child.wait().unwrap().code();
+        assert_eq!(code, None, "it was over before kill {kill}");
     }
-    assert_eq!(kills, 20, "the run was over before");
-    assert_eq!(child.wait().unwrap().code(), Some(0));
+    resume(&bench);
     assert_same(&bench, "out/column");
     let resumed = bench.summary("out/column")["resumed_at"].clone();
     let resumed: Vec<u64> = serde_json::from_value(resumed).unwrap();
@@ -160,7 +167,6 @@ fn a_run_that_is_killed_goes_on_as_if_it_had_not_been() {
 /// Ctrl-C and SIGTERM write a checkpoint and end with codes of their own; the run goes on from there with
 /// other threads, instructions, output and ends of stages, and its state is that of a run which has had
 /// these from the beginning. Its input files are needed no more.
-#[cfg(unix)]
 #[test]
 fn an_interrupted_run_goes_on_with_other_output_and_another_end() {
     let bench = bench();
@@ -204,7 +210,6 @@ fn an_interrupted_run_goes_on_with_other_output_and_another_end() {
 }
 
 /// What may not change is refused, and so is an end that is over; nothing has changed then.
-#[cfg(unix)]
 #[test]
 fn only_ends_of_stages_and_output_may_change() {
     let bench = bench();
@@ -280,7 +285,7 @@ fn only_ends_of_stages_and_output_may_change() {
 #[test]
 fn a_run_that_is_over_is_left_alone() {
     let bench = bench();
-    bench.done(&["run", "column"]);
+    bench.done(&[&["run", "column"][..], &RARELY].concat());
     let all = |bench: &Bench| -> Vec<_> {
         let files = bench.files().into_iter();
         files
@@ -298,7 +303,6 @@ fn a_run_that_is_over_is_left_alone() {
 
 /// A damaged checkpoint is noticed wherever it is damaged, and the one before serves; without any, the
 /// message says what to do.
-#[cfg(unix)]
 #[test]
 fn of_a_damaged_checkpoint_the_one_before_serves() {
     let bench = bench();
@@ -316,7 +320,7 @@ fn of_a_damaged_checkpoint_the_one_before_serves() {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 4;
     std::fs::write(&newest, &bytes).unwrap();
-    let output = bench.moldwarp(&["resume", "out/column"]);
+    let output = bench.moldwarp(&[&["resume", "out/column"][..], &RARELY].concat());
     let said = String::from_utf8(output.stderr).unwrap();
     let name = newest.file_name().unwrap().to_str().unwrap();
     let warning = format!("{name} cannot be used: it is damaged");
@@ -359,15 +363,20 @@ fn a_guard_leaves_a_checkpoint_and_a_frame_of_what_was_wrong() {
     let again = bench.fails(3, &["resume", "out/column"]);
     let stopped = |said: &str| said.split("stopped after").nth(1).unwrap().to_owned();
     assert_eq!(stopped(&said), stopped(&again));
-    let [mut whole, mut own] = ["whole", "out/column"].map(|out| results(&bench, out));
-    [&mut whole, &mut own].map(|all| all.retain(|f| !f.0.starts_with("checkpoints")));
+    let [whole, own] = ["whole", "out/column"].map(|out| {
+        let mut all = results(&bench, out);
+        all.retain(|f| !f.0.starts_with("checkpoints"));
+        all
+    });
     assert!(whole == own);
     let hash = |out: &str| bench.summary(out)["state_hash"].clone();
     assert_eq!(hash("whole"), hash("out/column"));
 }
 
 /// Rows of every step of a small column: a history that grows beyond anything else that is written.
-const ROWS: [&str; 4] = [
+const ROWS: [&str; 6] = [
+    "--set",
+    "output.checkpoint_interval=20 ms",
     "--set",
     "output.history_interval=0.1 ms",
     "--set",
@@ -375,7 +384,6 @@ const ROWS: [&str; 4] = [
 ];
 
 /// A shell in the bench's folder in which `$0 $@` is `moldwarp run column` with [`ROWS`].
-#[cfg(unix)]
 fn shell(bench: &Bench, wrap: &[&str], script: &str) -> std::process::Output {
     let words = [wrap, &["sh", "-c", script]].concat();
     let mut shell = std::process::Command::new(words[0]);
@@ -389,7 +397,6 @@ fn shell(bench: &Bench, wrap: &[&str], script: &str) -> std::process::Output {
 
 /// Where files cannot grow any more the run ends with code 4 and says what to do; with more room it
 /// goes on.
-#[cfg(unix)]
 #[test]
 fn a_limit_of_files_ends_the_run_with_a_checkpoint_to_go_on_from() {
     let bench = bench();
@@ -410,7 +417,7 @@ fn a_limit_of_files_ends_the_run_with_a_checkpoint_to_go_on_from() {
     );
     let what_to_do = "`moldwarp resume out/column` goes on from step ";
     assert!(said.contains(what_to_do), "{said}");
-    bench.done(&["resume", "out/column"]);
+    resume(&bench);
     assert_same(&bench, "out/column");
     let resumed = bench.summary("out/column")["resumed_at"][0]
         .as_u64()

@@ -42,9 +42,10 @@ fn plan(f: &Forecast, threads: usize) -> String {
     lines.push(steps(f));
     lines.push(effort(f, threads));
     lines.push(format!(
-        "disk        {} in {} frames, the ends of stages and the history",
+        "disk        {} in {} frames, the ends of stages and the history; {} for checkpoints on the way",
         text::bytes(f.disk),
-        f.frames
+        f.frames,
+        text::bytes(f.checkpoints)
     ));
     let columns: Vec<&str> = f.columns.iter().map(|c| c.0.as_str()).collect();
     lines.push(format!("history     {}", columns.join(" ")));

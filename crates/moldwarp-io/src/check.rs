@@ -1,7 +1,9 @@
 //! What a run would be, without running it.
 
 use crate::mesh::describe_quality;
-use crate::run::{Expected, RunError, columns, end_time, frame_bytes, simulation, whole_factor};
+use crate::run::{
+    Expected, RunError, checkpoint_bytes, columns, end_time, frame_bytes, simulation, whole_factor,
+};
 use crate::scene::{Every, Scene};
 use moldwarp::mesh::Visit;
 use moldwarp::plan::Until;
@@ -36,6 +38,8 @@ pub struct Forecast {
     pub frames: u64,
     /// Bytes of all frames, of the ends of stages and of the history.
     pub disk: f64,
+    /// Bytes of the checkpoints while the run goes on: two, and one that is being written.
+    pub checkpoints: f64,
     /// Columns of the history with their units.
     pub columns: Vec<(String, String)>,
     pub notes: Vec<String>,
@@ -90,6 +94,7 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
     let stage = frame_bytes(particles, 0, 0) + 24 * particles;
     let stages = (sim.plan().stages.len() * stage) as f64;
     let disk = frames as f64 * frame + stages + rows as f64 * (columns.len() * 20) as f64;
+    let checkpoints = 3.0 * checkpoint_bytes(&sim) as f64;
     let (pace, stopped) = trial(&mut sim);
     Ok(Forecast {
         title,
@@ -106,6 +111,7 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
         memory: peak_memory(),
         frames,
         disk,
+        checkpoints,
         columns,
         notes: scene.notes,
         stopped,

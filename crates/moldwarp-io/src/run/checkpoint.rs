@@ -137,15 +137,27 @@ impl Checkpoints {
     }
 }
 
+/// Size of a checkpoint, but for texts and recorded times.
+pub(crate) fn checkpoint_bytes(sim: &Simulation) -> usize {
+    let mut mesh = Vec::new();
+    sim.mesh().save(&mut mesh);
+    let mut all = mesh.len();
+    let Ok(()) = sim.save(|_, bytes| {
+        all += bytes.len();
+        Ok::<(), std::convert::Infallible>(())
+    });
+    all
+}
+
 /// A checkpoint that has been read.
 #[derive(Debug)]
 pub(super) struct Checkpoint {
     bytes: Vec<u8>,
-    pub generation: u64,
+    generation: u64,
     /// Number of stages that are over.
     pub stage: usize,
-    pub course: Course,
-    pub recorded: Recorded,
+    course: Course,
+    recorded: Recorded,
     pub beginning: Beginning,
 }
 
@@ -244,6 +256,16 @@ impl Checkpoint {
     /// The mesh as the run began.
     pub fn mesh(&self) -> Result<Mesh, CheckpointError> {
         Ok(load(self.section("mesh").unwrap_or_default())?)
+    }
+
+    /// What a run goes on with; the state, which is large, is forgotten.
+    pub fn go_on(self) -> (Beginning, Course, Recorded, u64) {
+        (
+            self.beginning,
+            self.course,
+            self.recorded,
+            self.generation + 1,
+        )
     }
 
     /// A section of the state.

@@ -18,6 +18,7 @@ pub use interrupt::Interrupt;
 pub use resume::resume;
 pub use state::state_hash;
 
+pub(crate) use checkpoint::checkpoint_bytes;
 pub(crate) use frames::frame_bytes;
 #[cfg(test)]
 pub(crate) use frames::{Field, NODE_FIELDS, PARTICLE_FIELDS};

@@ -62,7 +62,7 @@ pub fn resume(
     let expected = Expected::again(&scene.compare, &columns, references)?;
 
     // From here on something is changed.
-    let (mut beginning, mut course) = (checkpoint.beginning, checkpoint.course);
+    let (mut beginning, mut course, recorded, generation) = checkpoint.go_on();
     course.resumed_at.push(sim.steps());
     log.after(Duration::try_from_secs_f64(course.earlier).unwrap_or_default());
     problems.iter().try_for_each(|problem| log.line(problem))?;
@@ -79,7 +79,7 @@ pub fn resume(
     })?;
     let other = |now, before| (now != before).then_some(now);
     let recorder = Recorder::resume(
-        checkpoint.recorded,
+        recorded,
         [
             other(scene.output.frames, output.frames),
             other(scene.output.history, output.history),
@@ -93,10 +93,11 @@ pub fn resume(
     let checkpoints = Checkpoints::new(
         &folder,
         (&beginning, &mesh),
-        checkpoint.generation + 1,
+        generation,
         scene.output.checkpoints,
         start,
     );
+    drop(mesh);
     let mut notes = problems;
     notes.push(format!("resumed at step {}", sim.steps()));
     observer.begin(&sim, &folder, &notes);

@@ -1,7 +1,7 @@
 //! What may be changed of a run that goes on.
 
-use crate::common::Bench;
-use crate::{RARELY, bench, interrupt, results, start, undisturbed, wait_for};
+use crate::common::{Bench, COLUMN};
+use crate::{RARELY, assert_same, bench, interrupt, results, resume, start, undisturbed, wait_for};
 
 /// Ctrl-C and SIGTERM write a checkpoint and end with codes of their own; the run goes on from there with
 /// other threads, instructions, output and ends of stages, and its state is that of a run which has had
@@ -78,34 +78,12 @@ fn only_ends_of_stages_and_output_may_change() {
     insta::assert_snapshot!(all.concat());
     assert!(before == results(&bench, "out/column"));
 
-    // A stage that is over.
-    let short = [
-        "--set",
-        "stages.loading.duration=10 h",
-        "--set",
-        "stages.swinging.steps=1000000000",
-    ];
-    let mut child = start(
-        &bench,
-        &[&["run", "column", "--force"][..], &short].concat(),
-    );
-    wait_for(&bench.path("out/column/history.csv"), 1);
-    child.kill().unwrap();
-    child.wait().unwrap();
-    let mut child = start(
-        &bench,
-        &[
-            "resume",
-            "out/column",
-            "--set",
-            "stages.loading.duration=20 ms",
-            "--set",
-            "output.history_interval=1 ms",
-        ],
-    );
-    let stage = bench.path("out/column/stages/00_loading.vtu");
-    wait_for(&stage, 1);
-    wait_for(&bench.path("out/column/history.csv"), 20);
+    // A stage that is over: it ends after seven rows.
+    let endless = ["--set", "stages.swinging.steps=1000000000"];
+    let force = ["run", "column", "--force"];
+    let mut child = start(&bench, &[&force[..], &endless].concat());
+    wait_for(&bench.path("out/column/stages/00_loading.vtu"), 1);
+    wait_for(&bench.path("out/column/history.csv"), 12);
     child.kill().unwrap();
     child.wait().unwrap();
     let said = bench.fails(
@@ -118,6 +96,44 @@ fn only_ends_of_stages_and_output_may_change() {
         ],
     );
     assert!(said.contains("stage `loading` is over"), "{said}");
+}
+
+/// Of an earlier run that a run has begun with nothing is needed any more either.
+#[test]
+fn a_run_from_an_earlier_one_goes_on_without_it() {
+    let bench = bench();
+    bench.done(&[&["run", "column", "--out", "first"][..], &RARELY].concat());
+    let from = ["--from", "first@loading"];
+    undisturbed(&bench, &from);
+    let mut child = start(&bench, &[&["run", "column"][..], &from].concat());
+    wait_for(&bench.path("out/column/history.csv"), 2);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    std::fs::remove_dir_all(bench.path("first")).unwrap();
+    resume(&bench);
+    assert_same(&bench, "out/column");
+    assert_eq!(bench.summary("out/column")["from"], "first@loading");
+}
+
+/// A stage that has reached its limit without equilibrium can be given more time.
+#[test]
+fn a_stage_that_has_not_come_to_rest_is_given_more_time() {
+    let until = "duration = \"50 ms\"\nuntil = \"equilibrium\"\ndamping = 0.5";
+    let scene = COLUMN.replace("duration = \"0.2 s\"", until);
+    let bench = Bench::with(&scene);
+    let said = bench.fails(5, &["run", "column"]);
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let what_to_do = "`moldwarp resume out/column --set stages.NAME.duration=…`";
+    assert!(said.contains(what_to_do), "{said}");
+    bench.done(&[
+        "resume",
+        "out/column",
+        "--set",
+        "stages.loading.duration=1 h",
+    ]);
+    let summary = bench.summary("out/column");
+    assert_eq!(summary["exit"], "done");
+    assert!(summary["time"].as_f64().unwrap() > 0.05);
 }
 
 /// A run that is over is left as it is, file by file.

@@ -97,10 +97,12 @@ fn start(bench: &Bench, args: &[&str]) -> Child {
     command.spawn().unwrap()
 }
 
-/// Waits until a file is there with at least so many lines.
+/// Waits until a file is there with more than so many lines. With a second row in the history there is a
+/// checkpoint.
 fn wait_for(path: &Path, lines: usize) {
     let begun = Instant::now();
-    let there = || std::fs::read(path).map_or(0, |text| text.split(|&b| b == b'\n').count());
+    let count = |text: Vec<u8>| text.iter().filter(|&&b| b == b'\n').count();
+    let there = || std::fs::read(path).map_or(0, count);
     while there() <= lines {
         assert!(begun.elapsed() < Duration::from_secs(20), "{path:?}");
         std::thread::sleep(Duration::from_millis(2));

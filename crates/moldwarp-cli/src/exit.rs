@@ -37,6 +37,9 @@ pub fn of_stop(stop: &Stop) -> Exit {
         | Stop::PassedAFace { .. }
         | Stop::TurnedOver { .. }
         | Stop::Degenerate { .. }
+        | Stop::NotFinite { .. }
+        | Stop::Crushed { .. }
+        | Stop::Empty { .. }
         | Stop::Motion { .. }
         | Stop::NoRoom { .. }
         | Stop::TimeStep { .. } => Exit::Guard,

@@ -120,6 +120,14 @@ fn conclusion(outcome: &Outcome) -> String {
     lines.extend(s.compare.iter().map(compared));
     lines.extend(outcome.problems.iter().cloned());
     lines.extend(ledger(&outcome.energies, s.energy_turned_over));
+    if s.outflow_particles > 0 {
+        lines.push(format!(
+            "outflow: {} particles of {} kg",
+            s.outflow_particles,
+            text::number(s.outflow_mass)
+        ));
+    }
+    lines.extend(s.warnings.iter().map(|w| format!("warning: {w}")));
     let frames = outcome.folder.collection("particles");
     if frames.exists() {
         lines.push(format!("frames:  {} (ParaView)", frames.display()));

@@ -48,6 +48,15 @@ pub struct Summary {
     pub projections: Projected,
     /// Particles in elements of another body of an aligned contact at the end; there should be none.
     pub foreign_particles: usize,
+    /// Particles that are missing though nothing has taken them out; there must be none.
+    pub lost_particles: u64,
+    /// Particles that have left through outflow surfaces.
+    pub outflow_particles: u64,
+    /// Their mass, kg.
+    pub outflow_mass: f64,
+    /// What to doubt in the results: a ledger that does not close, or with large numerical terms, particles
+    /// where they should not be.
+    pub warnings: Vec<String>,
     /// The comparisons that the scene asked for and that could be made.
     pub compare: Vec<Compared>,
     /// Number of threads at work; the results do not depend on them.
@@ -147,6 +156,10 @@ mod tests {
                 work: 0.5,
             },
             foreign_particles: 0,
+            lost_particles: 0,
+            outflow_particles: 3,
+            outflow_mass: 0.5,
+            warnings: vec!["coarse".into()],
             compare: Vec::new(),
             threads: 2,
             version: "0.1.0".into(),

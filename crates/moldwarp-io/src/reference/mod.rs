@@ -67,18 +67,6 @@ impl Page {
     }
 }
 
-/// The keys of each table of the scene.
-pub fn keys_of_tables() -> Vec<Vec<String>> {
-    let names = |keys: Vec<keys::Key>| keys.into_iter().map(|k| k.name).collect();
-    let tables = keys::tables().into_iter();
-    tables.map(|table| names(table.keys)).collect()
-}
-
-/// The words that the variants of `file::Enum` stand for.
-pub fn words(path: &str) -> Vec<String> {
-    keys::words(path).into_iter().map(|w| w.name).collect()
-}
-
 /// The words of a line `{{…}}`.
 fn directive(line: &str) -> Option<Vec<&str>> {
     let inside = line.strip_prefix("{{")?.strip_suffix("}}")?;

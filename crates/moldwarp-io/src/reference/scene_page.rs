@@ -3,7 +3,7 @@
 use super::keys::{Key, Table, tables, words};
 use super::markdown::{code, table as markdown};
 use super::source::enum_named;
-use crate::scene::{dimensions, later};
+use crate::scene::dimensions;
 use moldwarp::plan::Quantity;
 
 pub fn table(directive: &[&str]) -> String {
@@ -18,10 +18,6 @@ pub fn table(directive: &[&str]) -> String {
         }
         ["units"] => units(),
         ["quantities"] => quantities(),
-        ["later"] => later()
-            .iter()
-            .map(|(what, names)| format!("- {what}: {}\n", code(names, ", ")))
-            .collect(),
         other => panic!("the page on the scene has no table {other:?}"),
     }
 }

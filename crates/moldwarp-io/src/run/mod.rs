@@ -11,6 +11,7 @@ mod schedule;
 mod stage_files;
 mod state;
 mod steps;
+mod warnings;
 mod whole;
 
 pub use checkpoint::CheckpointError;
@@ -296,6 +297,9 @@ fn conclude(
         ..computed(&sim, &course.pace)
     };
     log.line(&format!("{} at step {}", summary.exit, summary.steps))?;
+    for warning in &summary.warnings {
+        log.line(&format!("warning: {warning}"))?;
+    }
     if interrupted.is_none() {
         problems.iter().try_for_each(|problem| log.line(problem))?;
         summary.write(&folder.summary())?;
@@ -354,6 +358,10 @@ fn computed(sim: &Simulation, pace: &Pace) -> Summary {
             work: projections.work * whole::factor(sim),
         },
         foreign_particles: sim.foreign_particles(),
+        lost_particles: sim.lost_particles(),
+        outflow_particles: sim.outflown().particles,
+        outflow_mass: sim.outflown().mass * whole::factor(sim),
+        warnings: warnings::warnings(sim),
         state_hash: state_hash(sim),
         ..Summary::default()
     }

@@ -204,7 +204,6 @@ fn region(raw: &Spanned<RawRegion>) -> Result<Region, Fault> {
                 ("cone", Kind::Cone),
                 ("half-space", Kind::HalfSpace),
             ],
-            &[],
         )?,
     };
     refuse_others(kind, raw)?;

@@ -6,7 +6,6 @@ use super::functions::function;
 use super::quantity::Dimension;
 use super::raw::{RawBoundary, Text, Texts};
 use super::surfaces::{joined, surfaces, unique};
-use super::unsupported;
 use super::values::{amount, amount_at, choose, foreign, placed, required, span, three};
 use moldwarp::Mesh;
 use moldwarp::plan::{Boundary, BoundaryKind};
@@ -23,6 +22,9 @@ enum Kind {
     /// Waves go out: a dashpot, and a spring if there is a virtual thickness; see
     /// [absorbing boundaries](../theory/method.md#absorbing-boundaries).
     Absorbing,
+    /// Material leaves the mesh here: a particle that comes to the surface is taken out and counted. Nothing
+    /// holds the surface.
+    Outflow,
 }
 
 pub(super) fn boundaries(
@@ -83,8 +85,8 @@ fn kind(item: &Spanned<RawBoundary>) -> Result<BoundaryKind, Fault> {
             ("roller", Kind::Roller),
             ("prescribed", Kind::Prescribed),
             ("absorbing", Kind::Absorbing),
+            ("outflow", Kind::Outflow),
         ],
-        &unsupported::BOUNDARIES,
     )?;
     let keys = [
         ("directions", span(&raw.directions), Kind::Fixed),
@@ -110,6 +112,7 @@ fn kind(item: &Spanned<RawBoundary>) -> Result<BoundaryKind, Fault> {
         Kind::Roller => Ok(BoundaryKind::Roller),
         Kind::Prescribed => prescribed(item),
         Kind::Absorbing => absorbing(raw),
+        Kind::Outflow => Ok(BoundaryKind::Outflow),
     }
 }
 
@@ -117,7 +120,7 @@ fn directions(raw: &Texts) -> Result<[bool; 3], Fault> {
     let mut held = [false; 3];
     for (span, name) in each(raw) {
         let axes = [("x", 0), ("y", 1), ("z", 2)];
-        held[choose((span, name), "direction", &axes, &[])?] = true;
+        held[choose((span, name), "direction", &axes)?] = true;
     }
     if held == [false; 3] {
         return Err(Fault::new("`directions` must name at least one direction")
@@ -227,14 +230,14 @@ fn agrees_with(
     Ok(())
 }
 
-/// An absorbing boundary needs its surface for itself. A prescribed velocity must not be given
+/// An absorbing boundary and an outflow need their surface for themselves. A prescribed velocity must not be given
 /// in a direction that is held, or given again.
 fn contradict(a: &BoundaryKind, b: &BoundaryKind, surface: usize, mesh: &Mesh) -> bool {
     use BoundaryKind::*;
     let given = |velocity: &[Option<f64>; 3]| velocity.map(|v| v.is_some());
     let both = |a: [bool; 3], b: [bool; 3]| (0..3).any(|d| a[d] && b[d]);
     match (a, b) {
-        (Absorbing { .. }, _) | (_, Absorbing { .. }) => true,
+        (Absorbing { .. } | Outflow, _) | (_, Absorbing { .. } | Outflow) => true,
         (Fixed { .. } | Roller, Fixed { .. } | Roller) => false,
         (Prescribed { velocity: a, .. }, Prescribed { velocity: b, .. }) => {
             both(given(a), given(b))

@@ -68,7 +68,7 @@ fn surface(raw: Option<&Text>) -> Result<ContactSurface, Fault> {
         ("free", ContactSurface::Free),
     ];
     raw.map_or(Ok(ContactSurface::Free), |word| {
-        choose(placed(word), "kind of surface", &words, &[])
+        choose(placed(word), "kind of surface", &words)
     })
 }
 

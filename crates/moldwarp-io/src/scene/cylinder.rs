@@ -23,7 +23,7 @@ pub(super) fn cylinder(raw: &Spanned<RawCylinder>) -> Result<Mesh, Fault> {
     let split = match &raw.split {
         Some(word) => {
             let splits = [("six", Split::Six), ("symmetric", Split::Symmetric)];
-            choose(placed(word), "split", &splits, &[])?
+            choose(placed(word), "split", &splits)?
         }
         None => Split::default(),
     };

@@ -36,7 +36,6 @@ pub(super) fn function(raw: Option<&Spanned<RawFunction>>) -> Result<Function, F
             ("table", Kind::Table),
             ("half-sine", Kind::HalfSine),
         ],
-        &[],
     )?;
     refuse_others(kind, raw)?;
     let duration = || {

@@ -22,12 +22,7 @@ pub(super) fn initial_stress<'a>(
         };
     };
     let (place, raw) = (raw.span(), raw.get_ref());
-    choose(
-        placed(&raw.kind),
-        "kind of initial stress",
-        &[("k0", ())],
-        &[],
-    )?;
+    choose(placed(&raw.kind), "kind of initial stress", &[("k0", ())])?;
     let k0 = |body: &RawBody| {
         let k0 = body.k0.as_ref();
         k0.map(|k0| positive("k0", k0, Dimension::Number))

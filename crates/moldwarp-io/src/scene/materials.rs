@@ -52,7 +52,7 @@ fn model(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
         ("dilation_angle", span(&raw.dilation_angle)),
         ("tension_cutoff", span(&raw.tension_cutoff)),
     ];
-    match choose(placed(&raw.model), "model", &models, &[])? {
+    match choose(placed(&raw.model), "model", &models)? {
         Model::LinearElastic => {
             foreign(&raw.model, &plastic)?;
             elastic((name.span(), "a linear-elastic material"), raw).map(Material::LinearElastic)

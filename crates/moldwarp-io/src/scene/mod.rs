@@ -35,7 +35,6 @@ mod syntax;
 #[cfg(test)]
 mod tests;
 mod units;
-mod unsupported;
 mod values;
 
 pub use earlier::{Earlier, inherit};
@@ -48,7 +47,7 @@ pub(crate) use overrides::{keys, no_path, value};
 pub use quantity::{Dimension, QuantityError, parse as parse_quantity};
 
 #[cfg(test)]
-pub(crate) use {quantity::dimensions, unsupported::later};
+pub(crate) use quantity::dimensions;
 
 use moldwarp::{Mesh, Particles, Plan};
 use presence::Presence;

@@ -22,14 +22,14 @@ pub(super) fn numerics(raw: &RawNumerics) -> Result<Numerics, Fault> {
             ("mixed", Integration::Mixed),
             ("particle", Integration::Particle),
         ];
-        n.integration = choose(placed(word), "integration", &choices, &[])?;
+        n.integration = choose(placed(word), "integration", &choices)?;
     }
     if let Some(word) = &raw.mass {
         let choices = [
             ("corrected", MassMatrix::Corrected),
             ("lumped", MassMatrix::Lumped),
         ];
-        n.mass = choose(placed(word), "mass matrix", &choices, &[])?;
+        n.mass = choose(placed(word), "mass matrix", &choices)?;
     }
     if let Some(word) = &raw.smoothing {
         let choices = [
@@ -37,7 +37,7 @@ pub(super) fn numerics(raw: &RawNumerics) -> Result<Numerics, Fault> {
             ("false", Smoothing::Off),
             ("conjugate", Smoothing::Conjugate),
         ];
-        n.smoothing = choose((word.span(), &word.get_ref().0), "smoothing", &choices, &[])?;
+        n.smoothing = choose((word.span(), &word.get_ref().0), "smoothing", &choices)?;
     }
     if let Some(courant) = &raw.courant {
         n.courant = amount("courant", courant, Dimension::Number)?;

@@ -6,7 +6,6 @@ use super::error::Fault;
 use super::quantity::Dimension;
 use super::raw::{RawProbe, Text};
 use super::surfaces::surface;
-use super::unsupported;
 use super::values::{choose, exactly_one, find, fits_a_column, placed, span, vector};
 use moldwarp::plan::{Body, Boundary, Probe, Quantity, Target};
 use moldwarp::{Mesh, Vec3};
@@ -96,12 +95,7 @@ fn quantities(
         if boundaries.iter().any(|b| b.surfaces.contains(&s)));
     let mut chosen = Vec::new();
     for (span, word) in each(&raw.quantities) {
-        let quantity = choose(
-            (span.clone(), word),
-            "quantity",
-            &Quantity::ALL,
-            &unsupported::QUANTITIES,
-        )?;
+        let quantity = choose((span.clone(), word), "quantity", &Quantity::ALL)?;
         if quantity == Quantity::Reaction && !held {
             return Err(
                 Fault::new("`reaction` is the force on a surface with a boundary")

@@ -108,7 +108,7 @@ fn stage(
     let on = items(raw.on.as_ref(), true, named, switched)?;
     if let Some(reset) = &raw.reset {
         for (place, word) in each(reset) {
-            choose((place, word), "reset", &[("displacement", ())], &[])?;
+            choose((place, word), "reset", &[("displacement", ())])?;
         }
     }
     Ok(Stage {
@@ -154,7 +154,7 @@ fn until(raw: &RawStage) -> Result<Until, Fault> {
 }
 
 fn until_equilibrium(word: &Text, raw: &RawStage) -> Result<Until, Fault> {
-    choose(placed(word), "end of a stage", &[("equilibrium", ())], &[])?;
+    choose(placed(word), "end of a stage", &[("equilibrium", ())])?;
     if let Some(steps) = &raw.steps {
         return Err(Fault::new("a stage until equilibrium is limited in time")
             .at(steps.span(), "not in steps")

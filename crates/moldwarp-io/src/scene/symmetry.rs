@@ -28,9 +28,9 @@ pub(super) fn symmetry(
     let place = raw.span();
     let raw = raw.get_ref();
     let kinds = [("sector", Kind::Sector), ("half", Kind::Half)];
-    let kind = choose(placed(&raw.kind), "kind of symmetry", &kinds, &[])?;
+    let kind = choose(placed(&raw.kind), "kind of symmetry", &kinds)?;
     let axes = [("x", 0), ("y", 1), ("z", 2)];
-    let axis = choose(placed(&raw.axis), "axis", &axes, &[])?;
+    let axis = choose(placed(&raw.axis), "axis", &axes)?;
     let symmetry = match kind {
         Kind::Sector => {
             let owner = (place.clone(), "a sector");

@@ -2,7 +2,7 @@
 
 use super::error::Fault;
 use super::raw::RawScene;
-use super::{suggest, unsupported};
+use super::suggest;
 use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
@@ -155,14 +155,6 @@ fn given(found: &str) -> String {
 
 fn unknown_key(key: &str, expected: &[&str], error: &toml::de::Error) -> Fault {
     let span = error.span().unwrap_or(0..0);
-    if unsupported::key(key, expected) {
-        return Fault::new(format!("`{key}` is not supported yet by this version"))
-            .at(span, "not supported yet")
-            .help(format!(
-                "remove it; keys that belong here: {}",
-                suggest::list(expected.iter().copied())
-            ));
-    }
     let names = expected.iter().copied();
     let mut fault = Fault::new(format!("unknown key `{key}`"))
         .at(span, "no such key here")

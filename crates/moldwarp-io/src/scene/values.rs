@@ -121,19 +121,11 @@ pub(super) fn choose<T: Copy>(
     (span, word): (Range<usize>, &str),
     what: &str,
     choices: &[(&'static str, T)],
-    later: &[&str],
 ) -> Result<T, Fault> {
     if let Some(choice) = choices.iter().find(|c| c.0 == word) {
         return Ok(choice.1);
     }
     let words = choices.iter().map(|c| c.0);
-    if later.contains(&word) {
-        return Err(Fault::new(format!(
-            "{what} `{word}` is not supported yet by this version"
-        ))
-        .at(span, "not supported yet")
-        .help(format!("what there is: {}", suggest::list(words))));
-    }
     Err(Fault::new(format!("there is no {what} `{word}`"))
         .at(span, format!("no such {what}"))
         .help(suggest::help(word, "what there is", words)))

@@ -67,7 +67,9 @@ variants! {
     }
     SymmetryError { Angle NoMeridian NotRound NoPlane BothSides }
     // What is found when a scene is set up.
-    RunError { Scene NoSuchColumn OneColumn Reference Csv Folder File }
+    RunError {
+        Scene NoSuchColumn OneColumn Reference Csv Folder NoRun Over AtWork Checkpoint File Cut
+    }
     CsvError { File Empty NoHeader Width Number }
     CompareError { Empty NotFinite NotOrdered Flat NoOverlap }
     SetupError {
@@ -112,6 +114,26 @@ const ELSEWHERE: &[(&str, &str)] = &[
     (
         "RunError::File",
         "of the output: tests/refusals.rs of moldwarp-cli",
+    ),
+    (
+        "RunError::NoRun",
+        "of a run that is resumed: tests/resume of moldwarp-cli",
+    ),
+    (
+        "RunError::Over",
+        "of a run that is resumed: tests/resume of moldwarp-cli",
+    ),
+    (
+        "RunError::AtWork",
+        "of a run that is resumed: tests/resume of moldwarp-cli",
+    ),
+    (
+        "RunError::Checkpoint",
+        "of a run that is resumed: tests/resume of moldwarp-cli",
+    ),
+    (
+        "RunError::Cut",
+        "of the output: tests/resume of moldwarp-cli",
     ),
     (
         "CompareError::NoOverlap",

@@ -24,6 +24,11 @@ const ELSEWHERE: &[(&str, &str, &str)] = &[
         "`exactly_one` has refused it",
     ),
     (
+        "kept.rs",
+        "",
+        "of a run that is resumed: tests/resume of moldwarp-cli",
+    ),
+    (
         "loads.rs",
         "a load needs a size",
         "`exactly_one` has refused it",

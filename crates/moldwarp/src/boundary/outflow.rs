@@ -14,6 +14,8 @@ pub struct Outflow {
     faces: Vec<u8>,
 }
 
+crate::saved!(Outflow { faces });
+
 impl Outflow {
     /// Of the boundaries that are on.
     pub fn new(mesh: &Mesh, boundaries: &[&Boundary]) -> Outflow {

@@ -8,7 +8,6 @@ impl Saved for Mesh {
         let Mesh {
             nodes,
             tets,
-            gradients: _,
             volumes: _,
             altitudes: _,
             neighbours,
@@ -31,7 +30,6 @@ impl Saved for Mesh {
         let nodes = Vec::load(from)?;
         let tets: Vec<[u32; 4]> = Vec::load(from)?;
         let mut mesh = Mesh {
-            gradients: vec![Default::default(); tets.len()],
             volumes: vec![0.0; tets.len()],
             altitudes: vec![0.0; tets.len()],
             neighbours: Vec::load(from)?,

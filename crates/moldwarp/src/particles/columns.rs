@@ -3,6 +3,7 @@
 use super::State;
 use crate::Vec3;
 use crate::material::STATE_SIZE;
+use crate::saved::{Broken, Bytes, Saved};
 use crate::tensor::Voigt;
 use std::marker::PhantomData;
 
@@ -88,5 +89,22 @@ impl<T: From<[f64; N]> + Into<[f64; N]>, const N: usize> FromIterator<T> for Col
         let mut columns = Columns::default();
         values.into_iter().for_each(|value| columns.push(value));
         columns
+    }
+}
+
+impl<T, const N: usize> Saved for Columns<T, N> {
+    fn save(&self, out: &mut Vec<u8>) {
+        self.columns.save(out);
+    }
+
+    fn load(from: &mut Bytes) -> Result<Columns<T, N>, Broken> {
+        let columns = <[Vec<f64>; N]>::load(from)?;
+        match columns.iter().all(|c| c.len() == columns[0].len()) {
+            true => Ok(Columns {
+                columns,
+                values: PhantomData,
+            }),
+            false => Err(Broken::new("components of different numbers")),
+        }
     }
 }

@@ -7,9 +7,9 @@ use crate::lanes::Simd;
 use crate::measure::Profile;
 use crate::particles::{Order, Particles};
 use crate::plan::Plan;
-use crate::simulation::{Cells, Simulation};
+use crate::simulation::Simulation;
 use crate::stages::moduli;
-use crate::step::{Active, Node};
+use crate::step::{Active, Cells, Node, Shared};
 
 impl Simulation {
     /// Hands out everything that the simulation needs to go on, in sections with names; the plan is
@@ -34,9 +34,14 @@ impl Simulation {
             // Numbered from the particles' elements.
             active: _,
             nodes,
+            // Taken from the nodes, or written by each step before it is read.
+            shared: _,
             cells,
             constraints,
             absorbing,
+            outflow,
+            outflown,
+            present,
             follower,
             driven,
             loads,
@@ -74,6 +79,9 @@ impl Simulation {
         save("cells", &|out| cells.save(out))?;
         save("constraints", &|out| constraints.save(out))?;
         save("absorbing", &|out| absorbing.save(out))?;
+        save("outflow", &|out| outflow.save(out))?;
+        save("outflown", &|out| outflown.save(out))?;
+        save("present", &|out| present.save(out))?;
         save("follower", &|out| follower.save(out))?;
         save("driven", &|out| driven.save(out))?;
         save("loads", &|out| loads.save(out))?;
@@ -124,9 +132,13 @@ impl Simulation {
             contacts: Contacts::default(),
             active: Active::default(),
             nodes: Vec::new(),
+            shared: Shared::default(),
             cells: Cells::default(),
             constraints: from.load("constraints")?,
             absorbing: from.load("absorbing")?,
+            outflow: from.load("outflow")?,
+            outflown: from.load("outflown")?,
+            present: from.load("present")?,
             follower: from.load("follower")?,
             driven: from.load("driven")?,
             loads: from.load("loads")?,
@@ -153,22 +165,20 @@ impl Simulation {
 
     /// Numbers cells and nodes as they were: particles are in order already.
     fn number(&mut self) -> Result<(), Broken> {
-        let elements = self.plan.mesh.tets.len();
-        self.order.sort(&mut self.particles, elements, &self.fields);
-        let places = self.order.destination.iter().zip(0..);
-        check("particles", places.into_iter().all(|(a, b)| *a == b))?;
-        self.activate();
-        Ok(())
+        self.reorder();
+        let mut places = self.order.destination.iter().zip(0..);
+        check("particles", places.all(|(a, b)| *a == b))
     }
 
     /// Takes over what the last kick has left at nodes and in cells.
     fn take_kick(&mut self, nodes: Vec<Node>, kick: Cells) -> Result<(), Broken> {
-        let count = self.active.elements.len();
+        let count = self.active.tiles.len();
         check("nodes", nodes.len() == self.active.nodes.len())?;
         check("cells", kick.sums.len() == count)?;
         check("cells", kick.pairs.len() == count)?;
         check("cells", kick.stresses.len() == count)?;
         check("cells", kick.forces.len() == count)?;
+        self.shared.renew(&nodes);
         self.nodes = nodes;
         // The others have their sizes from the numbering.
         let Cells {

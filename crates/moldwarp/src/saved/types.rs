@@ -1,14 +1,14 @@
 //! What a state is made of, as far as its fields are open; the rest stands beside its structures.
 
-use crate::boundary::{AbsorbingNode, Function, LoadPoint};
+use crate::boundary::{AbsorbingNode, Function, LoadPoint, Outflown};
 use crate::contact::{Mass, Projections, Rigid, State, Tally};
 use crate::measure::{Energies, Forces, Scale};
 use crate::mesh::{Face, Surface, VolumeGroup};
 use crate::particles::Particles;
 use crate::saved;
 use crate::saved_enum;
-use crate::simulation::{Cells, Clock};
-use crate::step::{CellForce, CellStress, CellSums, Node, Reference};
+use crate::simulation::Clock;
+use crate::step::{CellForce, CellStress, CellSums, Cells, Node, Reference};
 
 saved!(Particles {
     id,
@@ -16,7 +16,7 @@ saved!(Particles {
     element,
     position,
     velocity,
-    displacement,
+    origin,
     stress,
     state,
     volume,
@@ -36,11 +36,7 @@ saved!(Node {
     average,
     grid_velocity,
     moved,
-    filling,
-    density,
     weighed,
-    volumetric,
-    mean_stress,
 });
 
 saved!(CellSums {
@@ -62,20 +58,22 @@ saved!(CellForce {
     viscous,
     weighed,
     filled,
+    density,
 });
 
 /// The sums and stresses of the last kick; all else is written by each step before it is read.
 impl crate::saved::Saved for Cells {
     fn save(&self, out: &mut Vec<u8>) {
         let Cells {
+            // Those of the mesh.
+            shapes: _,
             sums,
             pairs,
             stresses,
             forces,
-            nodal: _,
-            exchange: _,
             strains: _,
             weights: _,
+            corners: _,
         } = self;
         sums.save(out);
         pairs.save(out);
@@ -117,6 +115,7 @@ saved!(AbsorbingNode {
     displacement,
     rest,
 });
+saved!(Outflown { particles, mass });
 saved!(LoadPoint {
     load,
     particle,

@@ -308,7 +308,13 @@ mod tests {
         sim.plan.numerics.time_step = Some(10.0);
         assert!(matches!(sim.step(), Err(Stop::TimeStep { .. })));
         let mut sim = cube(1);
-        sim.set_velocity(|_| Vec3::new(f64::NAN, 0.0, 0.0)).unwrap();
-        assert!(sim.step().is_err() || sim.step().is_err());
+        let stop = sim.set_velocity(|_| Vec3::new(f64::NAN, 0.0, 0.0));
+        assert!(matches!(stop, Err(Stop::NotFinite { .. })));
+        // Two metres a step into an element of one: it is turned inside out.
+        let mut sim = cube(1);
+        sim.set_velocity(|x| Vec3::new(-5e2 * (x.x - 1.5), 0.0, 0.0))
+            .unwrap();
+        let stop = std::iter::repeat_with(|| sim.step()).find_map(Result::err);
+        assert!(matches!(stop, Some(Stop::Crushed { .. })), "{stop:?}");
     }
 }

@@ -249,7 +249,6 @@ fn boundaries() {
         case("misspelt surface", "\"y-max\"", "\"ymax\""),
         case("surface listed twice", "\"y-max\"", "\"x-max\""),
         case("misspelt kind", "\"roller\"", "\"rollers\""),
-        case("kind for later", "\"roller\"", "\"outflow\""),
         case("zero alpha", alpha, "alpha = 0"),
         case("negative thickness", "\"0.5 m\"", "[\"1 m\", \"-0.5 m\"]"),
         case(

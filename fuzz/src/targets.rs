@@ -7,10 +7,12 @@ use miette::Diagnostic;
 use moldwarp::Mesh;
 use moldwarp::mesh::RawMesh;
 use moldwarp_io::mesh::{check_overlap, explain_mesh_error, parse_gmsh, parse_plane_gmsh};
-use moldwarp_io::run::verify;
+use moldwarp_io::output::container::seal;
+use moldwarp_io::run::{RunOptions, read_checkpoint, run, verify};
 use moldwarp_io::scene::{Dimension, SceneError, parse, parse_quantity};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 /// A reader to be fuzzed.
 pub struct Target {
@@ -47,7 +49,16 @@ pub const QUANTITY: Target = Target {
     most: 200,
 };
 
-pub const ALL: [&Target; 3] = [&GMSH, &SCENE, &QUANTITY];
+/// The reader of checkpoints, up to a simulation that could go on. Their checksum is made right, so that
+/// what comes after it is reached.
+pub const CHECKPOINT: Target = Target {
+    name: "checkpoint",
+    run: checkpoint,
+    seeds: checkpoints,
+    most: 400_000,
+};
+
+pub const ALL: [&Target; 4] = [&GMSH, &SCENE, &QUANTITY, &CHECKPOINT];
 
 /// The repository, in which the crate that includes this file is somewhere.
 fn corpus() -> PathBuf {
@@ -197,4 +208,68 @@ fn quantity(bytes: &[u8]) -> bool {
     let fits = fits.count();
     assert!(fits <= 1, "{text:?} fits several dimensions");
     fits == 1
+}
+
+/// A small column with a probe and a load on an absorbing boundary.
+const COLUMN: &str = r#"
+version = 1
+gravity = [0, 0, -10]
+[mesh]
+box = { size = [0.1, 0.1, 0.2], cells = [1, 1, 2] }
+[materials.soil]
+model = "mohr-coulomb"
+young_modulus = "100 kPa"
+poisson_ratio = 0.2
+cohesion = "1 kPa"
+friction_angle = "30 deg"
+unit_weight = "18 kN/m3"
+[bodies.layer]
+volume = "box"
+material = "soil"
+[[boundaries]]
+surface = "z-min"
+kind = "absorbing"
+[[loads]]
+surface = "z-max"
+body = "layer"
+pressure = "1 kPa"
+[probes.bottom]
+surface = "z-min"
+quantities = ["displacement"]
+[[stages]]
+name = "all"
+steps = 10
+[output]
+frames = 0
+"#;
+
+/// Those of a run that is asked to stop at once.
+fn checkpoints() -> Vec<Vec<u8>> {
+    let out = std::env::temp_dir().join(format!("moldwarp-fuzz-{}", std::process::id()));
+    let scene = parse(Path::new("column.toml"), COLUMN).expect("the scene is right");
+    let options = RunOptions {
+        out: Some(out.clone()),
+        force: true,
+        ..RunOptions::default()
+    };
+    options.interrupt.signal().store(15, Ordering::Relaxed);
+    run(scene, &options, &mut ()).expect("the run can be made");
+    let entries = fs::read_dir(out.join("checkpoints")).expect("the run leaves checkpoints");
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|e| e.path()).collect();
+    paths.sort();
+    let all = paths
+        .iter()
+        .filter_map(|path| fs::read(path).ok())
+        .collect();
+    let _ = fs::remove_dir_all(&out);
+    all
+}
+
+fn checkpoint(bytes: &[u8]) -> bool {
+    let mut bytes = bytes.to_vec();
+    seal(&mut bytes);
+    match read_checkpoint(bytes) {
+        Ok(_) => true,
+        Err(error) => !told(&error.to_string()),
+    }
 }

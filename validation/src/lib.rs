@@ -9,6 +9,7 @@ pub mod example;
 mod plot;
 mod report;
 pub mod setup;
+pub mod soak;
 pub mod speed;
 
 pub use plot::{Curve, Plot};

@@ -1,8 +1,8 @@
 //! `moldwarp-validation coarse|fine [CASE]`: computes the cases and writes their tables and plots.
 //! `exact` writes the exact histories of the examples, `pictures` draws the examples' plots, `speed`
-//! measures the step.
+//! measures the step, `soak` runs an example over and over.
 
-use moldwarp_validation::{Fidelity, cases, example, speed};
+use moldwarp_validation::{Fidelity, cases, example, soak, speed};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -14,6 +14,7 @@ fn main() -> ExitCode {
         Some("fine") => Fidelity::Fine,
         Some("exact") => return written(example::write_exact().map_err(Into::into)),
         Some("speed") => return finished(speed::measure(&arguments[1..])),
+        Some("soak") => return finished(soak::soak(&arguments[1..])),
         Some("pictures") => return written(example::draw()),
         _ => return usage(),
     };
@@ -73,7 +74,7 @@ fn finished(result: Result<(), Box<dyn std::error::Error>>) -> ExitCode {
 
 fn usage() -> ExitCode {
     eprintln!(
-        "usage: moldwarp-validation coarse|fine [CASE] | exact | pictures | speed [BENCH]…\ncases:"
+        "usage: moldwarp-validation coarse|fine [CASE] | exact | pictures | speed [BENCH]… | soak [RUNS [EXAMPLE]]\ncases:"
     );
     for case in &cases::ALL {
         eprintln!("  {:18} {}", case.name, case.title);

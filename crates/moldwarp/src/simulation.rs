@@ -188,6 +188,8 @@ pub(crate) struct Clock {
     pub dt: f64,
     /// Coming step, s.
     pub next: f64,
+    /// Longest stable step so far, s.
+    pub longest: f64,
     /// Whether bodies were given velocities, came or went, or boundaries switched, when the stage began: what
     /// moves in held directions has to stop.
     pub new_constraints: bool,

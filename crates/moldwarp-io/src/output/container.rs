@@ -134,6 +134,14 @@ pub fn sections(bytes: &[u8]) -> Result<Vec<(&str, &[u8])>, Damage> {
     Ok(sections)
 }
 
+/// Gives bytes that have been changed the checksum that belongs to them, for tests of what comes after it.
+pub fn seal(bytes: &mut [u8]) {
+    let content = bytes.len().saturating_sub(CHECKSUM);
+    let (content, checksum) = bytes.split_at_mut(content);
+    let right = blake3::hash(content);
+    checksum.copy_from_slice(&right.as_bytes()[CHECKSUM - checksum.len()..]);
+}
+
 /// What the checksum is of, and the checksum.
 fn split(bytes: &[u8]) -> Result<(&[u8], &[u8; CHECKSUM]), Damage> {
     let parts = bytes.split_last_chunk();

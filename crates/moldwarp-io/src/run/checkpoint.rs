@@ -173,6 +173,8 @@ pub enum CheckpointError {
     },
     #[error("the run was made by moldwarp {theirs}, and this is {}", env!("CARGO_PKG_VERSION"))]
     Version { theirs: String },
+    #[error(transparent)]
+    Damage(#[from] Damage),
     /// The file is whole, but this program makes nothing of it.
     #[error("the checkpoint is not of this version of moldwarp: {0}")]
     Broken(#[from] Broken),
@@ -185,7 +187,9 @@ impl CheckpointError {
             CheckpointError::None(_) => {
                 "a run has one once its first step is about to be made: run the scene again"
             }
-            CheckpointError::Unusable { .. } => "run the scene again, with `--force`",
+            CheckpointError::Unusable { .. } | CheckpointError::Damage(_) => {
+                "run the scene again, with `--force`"
+            }
             CheckpointError::Version { .. } | CheckpointError::Broken(_) => {
                 "results could not be the same bit for bit: resume it with the version that made it, or \
                  run the scene again with `--force`"
@@ -235,6 +239,14 @@ impl Checkpoint {
                 problems: problems.join("; "),
             }),
         }
+    }
+
+    /// A checkpoint as a file holds it.
+    pub fn of(bytes: Vec<u8>) -> Result<Checkpoint, CheckpointError> {
+        Checkpoint::new(bytes).map_err(|unread| match unread {
+            Unread::Damage(damage) => damage.into(),
+            Unread::Broken(broken) => broken.into(),
+        })
     }
 
     fn new(bytes: Vec<u8>) -> Result<Checkpoint, Unread> {

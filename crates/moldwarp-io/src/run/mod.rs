@@ -16,7 +16,7 @@ mod whole;
 
 pub use checkpoint::CheckpointError;
 pub use interrupt::Interrupt;
-pub use resume::resume;
+pub use resume::{read_checkpoint, resume};
 pub use state::state_hash;
 
 pub(crate) use checkpoint::checkpoint_bytes;

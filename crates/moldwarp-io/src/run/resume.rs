@@ -5,13 +5,44 @@ use super::history::{Expected, columns};
 use super::log::Log;
 use super::recorder::Recorder;
 use super::steps::{Books, end_time};
-use super::{Observer, Outcome, RunError, RunOptions, conclude};
+use super::{CheckpointError, Observer, Outcome, RunError, RunOptions, conclude};
 use crate::output::{FileError, Folder, write_whole};
-use crate::scene::{Kept, check_end, kept};
-use moldwarp::Simulation;
+use crate::scene::{Kept, OutputSettings, Scene, SceneError, check_end, kept};
+use moldwarp::{Mesh, Plan, Simulation};
 use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
+
+/// Reads a checkpoint's bytes as [`resume`] does, up to the simulation that would go on, and returns its
+/// number of steps.
+///
+/// # Errors
+///
+/// If it cannot be used.
+pub fn read_checkpoint(bytes: Vec<u8>) -> Result<u64, RunError> {
+    let checkpoint = Checkpoint::of(bytes)?;
+    let (scene, _) = scene(&checkpoint, &checkpoint.mesh()?, Path::new("."), &[])?;
+    Ok(state(&checkpoint, scene.plan)?.steps())
+}
+
+/// The scene as run, with changes, and its output before them.
+fn scene(
+    checkpoint: &Checkpoint,
+    mesh: &Mesh,
+    path: &Path,
+    sets: &[String],
+) -> Result<(Scene, OutputSettings), SceneError> {
+    let of_run = Kept {
+        text: &checkpoint.beginning.text,
+        case: &checkpoint.beginning.case,
+        mesh: mesh.clone(),
+    };
+    kept(of_run, path, sets, checkpoint.stage)
+}
+
+fn state(checkpoint: &Checkpoint, plan: Plan) -> Result<Simulation, CheckpointError> {
+    Ok(Simulation::restore(plan, |name| checkpoint.section(name))?)
+}
 
 /// Goes on with the run in a folder from its last checkpoint, as if it had never stopped; what was
 /// written after that is written anew. `sets` may change the ends of stages and the output. Nothing is
@@ -44,15 +75,9 @@ pub fn resume(
     }
     let (checkpoint, problems) = Checkpoint::newest(&folder)?;
     let mesh = checkpoint.mesh()?;
-    let of_run = Kept {
-        text: &checkpoint.beginning.text,
-        case: &checkpoint.beginning.case,
-        mesh: mesh.clone(),
-    };
-    let (scene, output) = kept(of_run, path, sets, checkpoint.stage)?;
+    let (scene, output) = scene(&checkpoint, &mesh, path, sets)?;
     let title = scene.plan.title.clone();
-    let mut sim = Simulation::restore(scene.plan, |name| checkpoint.section(name))
-        .map_err(super::CheckpointError::from)?;
+    let mut sim = state(&checkpoint, scene.plan)?;
     check_end(&sim)?;
     if let Some(simd) = options.simd {
         sim.use_simd(simd);

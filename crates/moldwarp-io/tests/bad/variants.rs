@@ -79,7 +79,7 @@ variants! {
     SeedingError { Empty TooMany Overlap }
     InheritedError { Outside Overlap Density InitialStress }
     ContactError { RigidWithOthers NotOnFaces }
-    TimeStepError { AboveStable NotFinite }
+    TimeStepError { AboveStable Collapsed NotFinite }
     MotionError { NotOnFaces NotCovered NoGroup Held }
     InitialStressError { NoGravity Sloping SideBySide NotOnFaces Yields }
 }
@@ -134,6 +134,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
     (
         "RunError::Cut",
         "of the output: tests/resume of moldwarp-cli",
+    ),
+    (
+        "TimeStepError::Collapsed",
+        "in a run: step/mod.rs of the solver",
     ),
     (
         "CompareError::NoOverlap",

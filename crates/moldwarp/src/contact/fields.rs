@@ -22,6 +22,14 @@ impl Default for Fields {
 }
 
 impl Fields {
+    /// Whether they are fields of so many bodies.
+    pub(crate) fn fit(&self, bodies: usize) -> bool {
+        let known = |field: &u8| usize::from(*field) < self.count;
+        self.of_body.len() == bodies
+            && self.of_body.iter().all(known)
+            && (1..=bodies.max(1)).contains(&self.count)
+    }
+
     /// Bodies that no contact names share the first field, those that one side of a contact lists
     /// together share theirs, every other body has its own, and so has a body that is rigid.
     pub fn new(bodies: usize, contacts: &[Contact], rigid: impl Fn(usize) -> bool) -> Fields {

@@ -62,6 +62,15 @@ crate::saved!(SurfaceNode {
 crate::saved!(Probes { places, touching });
 
 impl Probes {
+    /// Whether they are probes of this plan, with so many particles.
+    pub(crate) fn fit(&self, plan: &Plan, particles: usize) -> bool {
+        let there = |place: &Place| match place {
+            Place::Particles(list) => list.iter().all(|p| (p.0 as usize) < particles),
+            Place::Nodes { .. } | Place::Body(_) | Place::Volume(_) => true,
+        };
+        self.places.len() == plan.probes.len() && self.places.iter().all(there)
+    }
+
     pub(crate) fn new(plan: &Plan, particles: &Particles, order: &Order) -> Probes {
         let place = |probe: &Probe| match probe.target {
             Target::Surface(s) if plan.boundaries.iter().any(|b| b.surfaces.contains(&s)) => {

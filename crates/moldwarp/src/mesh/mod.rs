@@ -44,16 +44,6 @@ pub struct Face {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Corner(u32);
 
-impl crate::saved::Saved for Corner {
-    fn save(&self, out: &mut Vec<u8>) {
-        self.0.save(out);
-    }
-
-    fn load(from: &mut crate::saved::Bytes) -> Result<Corner, crate::saved::Broken> {
-        u32::load(from).map(Corner)
-    }
-}
-
 impl Corner {
     pub(crate) fn new(owner: usize, local: usize) -> Corner {
         debug_assert!(owner < 1 << 30 && local < 4);

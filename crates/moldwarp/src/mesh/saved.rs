@@ -1,27 +1,25 @@
-//! A mesh as bytes; its geometry is that of its nodes, computed anew with the same bits.
+//! A mesh as bytes: what it was made of, from which it is made again with the same bits.
 
-use super::Mesh;
+use super::{Face, Mesh, RawMesh, Surface, VolumeGroup};
 use crate::saved::{Broken, Bytes, Saved};
 
 impl Saved for Mesh {
     fn save(&self, out: &mut Vec<u8>) {
+        // Taken apart, so that nothing that is no matter of nodes and elements is forgotten.
         let Mesh {
             nodes,
             tets,
             volumes: _,
             altitudes: _,
-            neighbours,
+            neighbours: _,
             node_volumes: _,
-            node_offsets,
-            node_elements,
+            node_offsets: _,
+            node_elements: _,
             volume_groups,
             surfaces,
         } = self;
         nodes.save(out);
         tets.save(out);
-        neighbours.save(out);
-        node_offsets.save(out);
-        node_elements.save(out);
         volume_groups.save(out);
         surfaces.save(out);
     }
@@ -29,27 +27,28 @@ impl Saved for Mesh {
     fn load(from: &mut Bytes) -> Result<Mesh, Broken> {
         let nodes = Vec::load(from)?;
         let tets: Vec<[u32; 4]> = Vec::load(from)?;
-        let mut mesh = Mesh {
-            volumes: vec![0.0; tets.len()],
-            altitudes: vec![0.0; tets.len()],
-            neighbours: Vec::load(from)?,
-            node_volumes: vec![0.0; nodes.len()],
-            node_offsets: Vec::load(from)?,
-            node_elements: Vec::load(from)?,
-            volume_groups: Vec::load(from)?,
-            surfaces: Vec::load(from)?,
-            nodes,
-            tets,
-        };
-        let known = |n: &u32| (*n as usize) < mesh.nodes.len();
-        let right = mesh.tets.as_flattened().iter().all(known)
-            && mesh.node_offsets.len() == mesh.nodes.len() + 1
-            && mesh.node_elements.len() == 4 * mesh.tets.len();
+        let groups: Vec<VolumeGroup> = Vec::load(from)?;
+        let surfaces: Vec<Surface> = Vec::load(from)?;
+        let there = |face: &Face| (face.element as usize) < tets.len() && face.local < 4;
+        let mut elements = groups.iter().flat_map(|g| &g.elements);
+        let right = elements.all(|&e| (e as usize) < tets.len())
+            && surfaces.iter().flat_map(|s| &s.faces).all(there);
         if !right {
             return Err(Broken::new("a mesh"));
         }
-        mesh.update_geometry();
-        Ok(mesh)
+        let corners = |face: &Face| {
+            let tet = tets[face.element as usize];
+            super::FACE_NODES[usize::from(face.local)].map(|i| tet[i])
+        };
+        let triangles = |s: &Surface| s.faces.iter().map(corners).collect();
+        let surface_groups = surfaces.iter().map(|s| (s.name.clone(), triangles(s)));
+        let raw = RawMesh {
+            volume_groups: groups.into_iter().map(|g| (g.name, g.elements)).collect(),
+            surface_groups: surface_groups.collect(),
+            nodes,
+            tets,
+        };
+        Mesh::new(raw).map_err(|error| Broken::new(format!("a mesh: {error}")))
     }
 }
 

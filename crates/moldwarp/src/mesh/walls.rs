@@ -25,6 +25,17 @@ crate::saved!(Walls {
 });
 
 impl Walls {
+    /// Whether they are walls of this mesh.
+    pub(crate) fn fit(&self, mesh: &Mesh) -> bool {
+        let (nodes, elements) = (mesh.nodes.len(), mesh.tets.len());
+        let grid_node = |n: &u32| (*n as usize) < nodes + self.extra.len();
+        let around = |a: &(u32, u32)| grid_node(&a.0) && (a.1 as usize) < elements;
+        (self.tets.is_empty() || self.tets.len() == elements)
+            && self.tets.iter().flatten().all(grid_node)
+            && self.extra.iter().all(|&n| (n as usize) < nodes)
+            && self.around.iter().all(around)
+    }
+
     /// Splits the nodes of these faces. Faces on the outside of the mesh have one side only and
     /// split nothing.
     pub fn new(mesh: &Mesh, faces: impl Iterator<Item = Face>) -> Walls {

@@ -2,6 +2,7 @@
 
 use super::{Broken, Saved, load};
 use crate::Vec3;
+use crate::boundary::LoadPoint;
 use crate::contact::Contacts;
 use crate::lanes::Simd;
 use crate::measure::Profile;
@@ -157,10 +158,24 @@ impl Simulation {
             spare_numbers: Vec::new(),
             plan,
         };
+        simulation.check_numbers()?;
         simulation.number()?;
         simulation.take_kick(nodes, cells)?;
         simulation.contacts = contacts;
         Ok(simulation)
+    }
+
+    /// That what the numbering meets is there. All else is taken on trust: a file that has been changed since
+    /// it was written has another checksum.
+    fn check_numbers(&self) -> Result<(), Broken> {
+        let count = self.particles.len();
+        check("fields", self.fields.fit(self.plan.bodies.len()))?;
+        check("walls", self.walls.fit(&self.plan.mesh))?;
+        check("probes", self.probes.fit(&self.plan, count))?;
+        let there = |point: &LoadPoint| {
+            (point.particle as usize) < count && (point.load as usize) < self.plan.loads.len()
+        };
+        check("loads", self.loads.iter().all(there))
     }
 
     /// Numbers cells and nodes as they were: particles are in order already.

@@ -105,6 +105,7 @@ saved!(Clock {
     stage_steps,
     dt,
     next,
+    longest,
     new_constraints,
 });
 

@@ -94,8 +94,8 @@ impl<T: Saved> Saved for Vec<T> {
 
     fn load(from: &mut Bytes) -> Result<Vec<T>, Broken> {
         let count = usize::load(from)?;
-        // No item takes less than a byte: a length that is wrong must not ask for all memory.
-        let mut items = Vec::with_capacity(count.min(from.left()));
+        // A length that is wrong must not ask for all memory; numbers take as many bytes as in memory.
+        let mut items = Vec::with_capacity(count.min(from.left() / size_of::<T>().max(1)));
         for _ in 0..count {
             items.push(T::load(from)?);
         }

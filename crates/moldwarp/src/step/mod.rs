@@ -310,6 +310,16 @@ mod tests {
         let mut sim = cube(1);
         let stop = sim.set_velocity(|_| Vec3::new(f64::NAN, 0.0, 0.0));
         assert!(matches!(stop, Err(Stop::NotFinite { .. })));
+        // As if the mesh had been ten thousand times as coarse.
+        let mut sim = cube(1);
+        sim.step().unwrap();
+        sim.clock.longest *= 2e4;
+        let stop = sim.step();
+        assert!(
+            matches!(&stop, Err(Stop::TimeStep { error: TimeStepError::Collapsed { place, .. }, .. })
+                if place.cmpge(Vec3::splat(1.0)).all() && place.cmple(Vec3::splat(2.0)).all()),
+            "{stop:?}"
+        );
         // Two metres a step into an element of one: it is turned inside out.
         let mut sim = cube(1);
         sim.set_velocity(|x| Vec3::new(-5e2 * (x.x - 1.5), 0.0, 0.0))

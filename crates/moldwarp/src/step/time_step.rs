@@ -2,6 +2,7 @@
 
 use super::shapes::Shapes;
 use super::{CellForce, CellStress, CellSums, TILES, correction};
+use crate::Vec3;
 use crate::lanes::{LANES, Lane, either, for_each_simd, get};
 use crate::parallel::{Smallest, Sum, fold};
 use crate::simulation::Simulation;
@@ -19,19 +20,42 @@ pub enum TimeStepError {
         courant: f64,
     },
     #[error(
+        "the stable time step has collapsed from {longest:.3e} s to {stable:.3e} s, around {place} m: an \
+         element there is nearly flat, or its material has become as dense or light as it should never be; \
+         look at the last frame, and make elements larger or loads smaller there"
+    )]
+    Collapsed {
+        longest: f64,
+        stable: f64,
+        place: Vec3,
+    },
+    #[error(
         "there is no stable time step, as a stress, volume or velocity is not a finite number: \
          look for values out of proportion in materials, loads and velocities"
     )]
     NotFinite,
 }
 
+/// A stable step below this part of the longest there has been will not come to an end. (A mesh that moves
+/// compresses elements to a fiftieth.)
+const COLLAPSED: f64 = 1e-4;
+
 /// The step to take, s.
-pub(super) fn choose(sim: &Simulation) -> Result<f64, TimeStepError> {
-    let numerics = &sim.plan.numerics;
-    let stable = numerics.courant * critical(sim);
+pub(super) fn choose(sim: &mut Simulation) -> Result<f64, TimeStepError> {
+    let stable = sim.plan.numerics.courant * critical(sim);
     if !stable.is_finite() || stable <= 0.0 {
         return Err(TimeStepError::NotFinite);
     }
+    let longest = sim.clock.longest.max(stable);
+    sim.clock.longest = longest;
+    if stable < COLLAPSED * longest {
+        return Err(TimeStepError::Collapsed {
+            longest,
+            stable,
+            place: shortest_at(sim),
+        });
+    }
+    let numerics = &sim.plan.numerics;
     match numerics.time_step {
         Some(forced) if forced > stable => Err(TimeStepError::AboveStable {
             forced,
@@ -50,14 +74,8 @@ pub(super) fn choose(sim: &Simulation) -> Result<f64, TimeStepError> {
 /// averaging can stiffen (`correction::stiffening`). Viscosity β lowers the step by
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
 pub(crate) fn critical(sim: &Simulation) -> f64 {
-    let Simulation {
-        plan, cells, simd, ..
-    } = sim;
-    let limits = Limits {
-        partly: correction::stiffening(plan.numerics.mass),
-        stiffest: sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max),
-        viscosity: plan.numerics.viscosity,
-    };
+    let Simulation { cells, simd, .. } = sim;
+    let limits = Limits::of(sim);
     let records = (
         &cells.shapes[..],
         (&cells.sums[..], &cells.stresses[..], &cells.forces[..]),
@@ -85,11 +103,43 @@ pub(crate) fn critical(sim: &Simulation) -> f64 {
     .0
 }
 
+/// The middle of the element that has the shortest step.
+fn shortest_at(sim: &Simulation) -> Vec3 {
+    let limits = Limits::of(sim);
+    let Simulation {
+        plan, cells, simd, ..
+    } = sim;
+    let mut steps = [0.0; LANES];
+    let mut shortest = (f64::INFINITY, 0);
+    for tile in 0..cells.sums.len() {
+        let (shapes, sum) = (&cells.shapes[tile], &cells.sums[tile]);
+        let (stress, force) = (&cells.stresses[tile], &cells.forces[tile]);
+        times(*simd, &limits, shapes, sum, stress, force, &mut steps);
+        for (l, &step) in steps.iter().enumerate() {
+            if step < shortest.0 {
+                shortest = (step, tile * LANES + l);
+            }
+        }
+    }
+    plan.mesh.centroid(sim.active.elements[shortest.1] as usize)
+}
+
 /// What all cells share.
 struct Limits {
     partly: f64,
     stiffest: f64,
     viscosity: f64,
+}
+
+impl Limits {
+    fn of(sim: &Simulation) -> Limits {
+        let numerics = &sim.plan.numerics;
+        Limits {
+            partly: correction::stiffening(numerics.mass),
+            stiffest: sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max),
+            viscosity: numerics.viscosity,
+        }
+    }
 }
 
 for_each_simd! {

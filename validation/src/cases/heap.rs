@@ -45,6 +45,7 @@ fn plan(slope: f64, n: usize) -> Plan {
     });
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     setup::bound(&mut plan, &setup::SIDES, BoundaryKind::Roller);
+    plan.title = format!("{slope}°, {n} cells");
     plan.numerics.damping = 0.7;
     let time = if safe(slope) { STAY } else { RUN_OUT };
     plan.stages.push(Stage {

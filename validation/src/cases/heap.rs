@@ -105,8 +105,7 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
         }
         if s.finished() {
             (o.slope, o.surface) = surface(s, HEIGHT / n as f64);
-            let far = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
-            o.reach = far(p.position.components()[0]);
+            o.reach = p.position.iter().map(|x| x.x).fold(0.0, f64::max);
             o.wall = s.mesh().nodes.iter().map(|x| x.x).fold(0.0, f64::max);
         }
     });

@@ -113,3 +113,21 @@ fn commit() -> String {
         _ => "unknown".to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A case that is new has to be computed: `moldwarp-validation ledgers NAME`.
+    #[test]
+    fn the_committed_table_has_all_cases_and_is_made_of_the_committed_rows() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/coarse");
+        let ledgers = Ledgers::read(&folder.join("ledgers.csv")).expect("ledgers.csv");
+        assert!(names().eq(ledgers.cases()));
+        let page = std::fs::read_to_string(folder.join("ledgers.md")).expect("ledgers.md");
+        assert!(
+            page == ledgers.markdown(),
+            "ledgers.md is not of ledgers.csv"
+        );
+    }
+}

@@ -71,6 +71,13 @@ impl Ledgers {
         self.rows.sort_by_key(place);
     }
 
+    /// In their order.
+    #[cfg(test)]
+    pub fn cases(&self) -> impl Iterator<Item = &str> {
+        let cases = self.rows.chunk_by(|a, b| a[CASE] == b[CASE]);
+        cases.map(|runs| runs[0][CASE].as_str())
+    }
+
     pub fn csv(&self) -> String {
         let header = COLUMNS.join(",") + "\n";
         let rows = self.rows.iter().map(|r| r.join(",") + "\n");

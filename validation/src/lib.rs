@@ -6,6 +6,7 @@
 pub mod cases;
 pub mod exact;
 pub mod example;
+pub mod ledgers;
 mod plot;
 mod report;
 pub mod setup;

@@ -1,8 +1,9 @@
 //! `moldwarp-validation coarse|fine [CASE]`: computes the cases and writes their tables and plots.
 //! `exact` writes the exact histories of the examples, `pictures` draws the examples' plots, `speed`
-//! measures the step, `soak` runs an example over and over.
+//! measures the step, `ledgers [coarse|fine] [NAME]…` tabulates the ledgers of cases and examples, `soak`
+//! runs an example over and over.
 
-use moldwarp_validation::{Fidelity, cases, example, soak, speed};
+use moldwarp_validation::{Fidelity, cases, example, ledgers, soak, speed};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -15,6 +16,7 @@ fn main() -> ExitCode {
         Some("exact") => return written(example::write_exact().map_err(Into::into)),
         Some("speed") => return finished(speed::measure(&arguments[1..])),
         Some("soak") => return finished(soak::soak(&arguments[1..])),
+        Some("ledgers") => return tabulated(ledgers::tabulate(&arguments[1..])),
         Some("pictures") => return written(example::draw()),
         _ => return usage(),
     };
@@ -72,9 +74,18 @@ fn finished(result: Result<(), Box<dyn std::error::Error>>) -> ExitCode {
     }
 }
 
+/// Code 1 if a ledger is over a limit.
+fn tabulated(result: Result<bool, Box<dyn std::error::Error>>) -> ExitCode {
+    match result {
+        Ok(false) => ExitCode::FAILURE,
+        result => finished(result.map(|_| ())),
+    }
+}
+
 fn usage() -> ExitCode {
     eprintln!(
-        "usage: moldwarp-validation coarse|fine [CASE] | exact | pictures | speed [BENCH]… | soak [RUNS [EXAMPLE]]\ncases:"
+        "usage: moldwarp-validation coarse|fine [CASE] | ledgers [coarse|fine] [NAME]… | exact | \
+         pictures | speed [BENCH]… | soak [RUNS [EXAMPLE]]\ncases:"
     );
     for case in &cases::ALL {
         eprintln!("  {:18} {}", case.name, case.title);

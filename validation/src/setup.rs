@@ -1,5 +1,6 @@
 //! Plans that several cases share.
 
+use crate::ledgers::{self, Watch};
 use moldwarp::boundary::Function;
 use moldwarp::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParameters};
 use moldwarp::mesh::box_mesh;
@@ -143,21 +144,21 @@ pub fn run(plan: Plan, look: impl FnMut(&Simulation)) -> Balance {
 
 /// Runs a simulation to its end; `look` is called at the start and after every step.
 pub fn run_from(mut simulation: Simulation, mut look: impl FnMut(&Simulation)) -> Balance {
-    let (mut residual, mut numerical) = (0.0f64, 0.0f64);
+    let mut watch = Watch::default();
     look(&simulation);
     while !simulation.finished() {
         simulation.step().unwrap_or_else(|e| panic!("{e}"));
-        let energies = simulation.energies();
-        residual = residual.max(energies.residual.abs());
-        numerical = numerical.max(energies.numerical());
+        watch.see(simulation.energies());
         look(&simulation);
     }
-    let whole = simulation.energy_turned_over();
-    Balance {
-        residual: residual / whole,
-        numerical: numerical / whole,
-        contact: simulation.energies().contact / whole,
-    }
+    let entry = watch.end(&simulation);
+    let balance = Balance {
+        residual: entry.residual,
+        numerical: entry.numerical(),
+        contact: simulation.energies().contact / entry.turned_over,
+    };
+    ledgers::note(entry);
+    balance
 }
 
 /// The value of a probe's column.

@@ -36,6 +36,7 @@ pub struct History {
 /// The plan of the column of n elements' height with a load in Pa.
 pub fn plan(n: usize, bottom: Bottom, load: f64, end: f64) -> Plan {
     let mut plan = setup::column(setup::column_mesh(n), setup::papers_soil(), end);
+    plan.title = format!("{}, {n} elements, {load} Pa, {end} s", name(bottom));
     setup::bound(&mut plan, &["z-min"], boundary(bottom));
     setup::load(&mut plan, "z-max", Vec3::new(0.0, 0.0, -load));
     setup::probe(
@@ -46,6 +47,17 @@ pub fn plan(n: usize, bottom: Bottom, load: f64, end: f64) -> Plan {
     );
     setup::probe(&mut plan, "top", "z-max", &[Quantity::Displacement]);
     plan
+}
+
+fn name(bottom: Bottom) -> String {
+    match bottom {
+        Bottom::Rigid => "rigid".to_owned(),
+        Bottom::Dashpot { alpha } => format!("dashpot, α = {alpha}"),
+        Bottom::DashpotAndSpring {
+            alpha,
+            virtual_thickness,
+        } => format!("dashpot and spring, α = {alpha}, δ = {virtual_thickness} m"),
+    }
 }
 
 fn boundary(bottom: Bottom) -> BoundaryKind {

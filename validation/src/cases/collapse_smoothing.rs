@@ -49,6 +49,7 @@ fn plan(n: usize, smoothing: Smoothing) -> Plan {
     });
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     setup::bound(&mut plan, &setup::SIDES, BoundaryKind::Roller);
+    plan.title = format!("smoothing {smoothing:?}, {n} cells").to_lowercase();
     plan.numerics.smoothing = smoothing;
     plan
 }

@@ -43,6 +43,7 @@ fn plan(a: f64, n: usize, end: f64) -> Plan {
     let mesh = sector.mesh().expect("a cylinder is a good mesh");
     let sand = setup::mohr_coulomb((5e6, 0.3), 0.0, 30.0, None, DENSITY);
     let mut plan = setup::free_body(mesh, sand, end);
+    plan.title = format!("a = {a}, {n} elements");
     plan.bodies[0].place = Place::Region(Region::Cylinder {
         start: Vec3::ZERO,
         end: Vec3::new(0.0, 0.0, a),

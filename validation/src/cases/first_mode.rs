@@ -75,6 +75,7 @@ impl Mode {
         let c = (1e5 / material.density).sqrt();
         let period = 4.0 / c;
         let mut plan = setup::column_with_room(n, material, 10.0 * period);
+        plan.title = format!("{n} elements, strain {strain}");
         setup::bound(&mut plan, &["z-min"], setup::FIXED);
         let mut simulation = Simulation::new(plan).unwrap_or_else(|e| panic!("{e}"));
         let shape = |x: Vec3| (std::f64::consts::FRAC_PI_2 * x.z).sin();

@@ -142,6 +142,8 @@ fn press(ground: Ground, push: Push, sides: &[&str], smoothing: Smoothing) -> Ve
     setup::bound(&mut plan, &["footing"], kind);
     let quantities = [Quantity::Reaction, Quantity::Displacement];
     setup::probe(&mut plan, "footing", "footing", &quantities);
+    let elements = plan.mesh.tets.len();
+    plan.title = format!("{elements} elements, smoothing {smoothing:?}").to_lowercase();
     plan.numerics.damping = 0.5;
     plan.numerics.smoothing = smoothing;
     let mut curve = Vec::new();

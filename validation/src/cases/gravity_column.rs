@@ -17,6 +17,7 @@ const STATIC: f64 = DENSITY * G / (2.0 * E);
 
 fn plan(n: usize, end: f64) -> Plan {
     let mut plan = setup::column(setup::column_mesh(n), setup::elastic(E, 0.0, DENSITY), end);
+    plan.title = format!("{n} elements, undamped");
     plan.gravity = Vec3::new(0.0, 0.0, -G);
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     setup::probe(&mut plan, "top", "z-max", &[Quantity::Displacement]);
@@ -166,6 +167,7 @@ fn at_rest(report: &mut Report, fidelity: Fidelity) {
     let n = fidelity.pick(10, 40);
     let period = 4.0 / wave_speed();
     let mut plan = plan(n, 25.0 * period);
+    plan.title = format!("{n} elements, damped");
     let stage = Stage {
         damping: Some(0.4),
         ..plan.stages[0].clone()

@@ -45,6 +45,7 @@ fn plan(slope: f64, n: usize) -> Plan {
     });
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     setup::bound(&mut plan, &setup::SIDES, BoundaryKind::Roller);
+    plan.title = format!("{slope}°, {n} cells");
     plan.numerics.damping = 0.7;
     let time = if safe(slope) { STAY } else { RUN_OUT };
     plan.stages.push(Stage {
@@ -104,8 +105,7 @@ fn compute(slope: f64, n: usize) -> (Outcome, Balance) {
         }
         if s.finished() {
             (o.slope, o.surface) = surface(s, HEIGHT / n as f64);
-            let far = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
-            o.reach = far(p.position.components()[0]);
+            o.reach = p.position.iter().map(|x| x.x).fold(0.0, f64::max);
             o.wall = s.mesh().nodes.iter().map(|x| x.x).fold(0.0, f64::max);
         }
     });

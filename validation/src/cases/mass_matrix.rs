@@ -79,6 +79,7 @@ fn free_vibration(n: usize, mass: MassMatrix) -> (f64, f64) {
     let c = (1e5 / material.density).sqrt();
     let period = 4.0 / c;
     let mut plan = setup::column_with_room(n, material, 10.0 * period);
+    plan.title = format!("{n} elements, {mass:?} mass").to_lowercase();
     plan.numerics.mass = mass;
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     let mut simulation = Simulation::new(plan).unwrap_or_else(|e| panic!("{e}"));

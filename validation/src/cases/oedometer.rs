@@ -83,6 +83,7 @@ fn compress(n: usize, curve: &mut Vec<(f64, f64)>) -> Rest {
     let material = setup::elastic(E, 0.0, 1800.0);
     let ramp = 40.0 / (E / material.density).sqrt();
     let mut plan = setup::column(setup::column_mesh(n), material, 1.5 * ramp);
+    plan.title = format!("{n} elements");
     plan.numerics.damping = 0.2;
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     setup::load(&mut plan, "z-max", Vec3::new(0.0, 0.0, -LOAD));

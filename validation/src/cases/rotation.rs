@@ -58,6 +58,7 @@ fn plan(shape: Shape, n: usize, end: f64) -> Plan {
     let density = 1000.0;
     let material = setup::elastic(density * SPEED * SPEED, 0.2, density);
     let mut plan = setup::free_body(mesh, material, end);
+    plan.title = format!("{}, {n} elements a metre", shape.name());
     plan.bodies[0].place = Place::Region(shape.region());
     plan
 }

@@ -42,6 +42,7 @@ pub fn run(fidelity: Fidelity) -> Report {
                 setup::elastic(2.0 * (1.0 + NU) * G, NU, DENSITY),
                 end,
             );
+            plan.title = format!("{n} elements, α_s = {alpha}");
             let held = BoundaryKind::Fixed {
                 directions: [false, true, true],
             };

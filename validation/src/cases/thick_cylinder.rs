@@ -88,6 +88,7 @@ fn plan(way: Way, n: usize) -> Plan {
     let shear_speed = (YOUNG / (2.0 * (1.0 + way.poisson)) / DENSITY).sqrt();
     let ramp = 2.0 * OUTER / shear_speed;
     let mut plan = setup::free_body(mesh, soil, 5.0 * ramp);
+    plan.title = format!("{}, {n} cells", way.name());
     let sides = ["theta-min", "theta-max", "z-min", "z-max"];
     setup::bound(&mut plan, &sides, BoundaryKind::Roller);
     plan.loads.push(Load {

@@ -40,6 +40,8 @@ fn plan(h: f64, gap_check: bool) -> Plan {
     let mesh = box_mesh(size, cells).expect("a box is a good mesh");
     let end = GAP * h / SPEED + 1.3 * touch();
     let mut plan = setup::column(mesh, setup::elastic(E, 0.0, DENSITY), end);
+    let word = if gap_check { "on" } else { "off" };
+    plan.title = format!("gap check {word}, h = {h} m");
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     let between = |low: f64, high: f64| Region::Box {
         min: Vec3::new(0.0, 0.0, low),

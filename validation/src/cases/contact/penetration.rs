@@ -74,6 +74,12 @@ fn plan(tool: Tool, h: f64, friction: f64, gap_check: bool, base: bool) -> (Plan
     let way = if base { WAY } else { 0.4 * WAY };
     let soil = setup::mohr_coulomb((5e6, 0.3), 5e3, 20.0, None, 2000.0);
     let mut plan = setup::free_body(mesh, soil, way / SPEED);
+    plan.title = format!(
+        "{}, μ = {friction}, gap check {}, h = {h} m{}",
+        tool.name(),
+        if gap_check { "on" } else { "off" },
+        if base { "" } else { ", soil on nothing" }
+    );
     setup::bound(&mut plan, &setup::SIDES, BoundaryKind::Roller);
     plan.materials.push(NamedMaterial {
         name: "steel".to_owned(),

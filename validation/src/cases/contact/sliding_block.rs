@@ -87,6 +87,13 @@ impl Scene {
         let mesh = box_mesh(size, cells).expect("a box is a good mesh");
         let stone = setup::elastic(E, 0.3, DENSITY);
         let mut plan = setup::free_body(mesh, stone, self.time());
+        plan.title = format!(
+            "{}, μ = {}, {} Pa, viscosity {} s, h = {h} m",
+            self.surface_name(),
+            self.friction,
+            self.adhesion,
+            self.viscosity
+        );
         plan.gravity = G * Vec3::new(SLOPE.sin(), 0.0, -SLOPE.cos());
         let min = Vec3::new(START, 0.0, BASE);
         let max = min + Vec3::new(LENGTH, h, HEIGHT);

@@ -55,6 +55,8 @@ impl Scene {
         let cells = (SIZE / h).to_array().map(|n| n.round() as usize);
         let mesh = box_mesh(SIZE, cells).expect("a box is a good mesh");
         let mut plan = setup::free_body(mesh, setup::elastic(E, 0.3, DENSITY), END);
+        let word = format!("{smoothing:?}").to_lowercase();
+        plan.title = format!("{}, smoothing {word}, h = {h:.4} m", self.name);
         let half = 0.5 * Vec3::new(self.reach() + GAP, self.offset, 0.0);
         let sphere = |name, side: f64| {
             let centre = 0.5 * SIZE + side * half;

@@ -32,6 +32,15 @@ enum Rest {
     LocalDamping,
 }
 
+impl Rest {
+    fn name(self) -> &'static str {
+        match self {
+            Rest::Viscosity => "viscosity",
+            Rest::LocalDamping => "local damping",
+        }
+    }
+}
+
 fn plan(h: f64, surface: ContactSurface, rest: Rest) -> Plan {
     // Two cells of room at the sides and above.
     let size = Vec3::new(WIDTH + 4.0 * h, h, 3.0 * HEIGHT + 2.0 * h);
@@ -52,6 +61,7 @@ fn plan(h: f64, surface: ContactSurface, rest: Rest) -> Plan {
         contact([0, 1], FRICTION, surface),
         contact([1, 2], FRICTION, surface),
     ];
+    plan.title = format!("{surface:?}, {}, h = {h} m", rest.name()).to_lowercase();
     match rest {
         Rest::Viscosity => plan.numerics.viscosity = 2.9e-3,
         Rest::LocalDamping => plan.numerics.damping = 0.7,
@@ -142,16 +152,13 @@ pub fn run(fidelity: Fidelity) -> Report {
         ("free", ContactSurface::Free),
     ] {
         let meshes = fidelity.pick(vec![2], vec![2, 4, 8]);
-        let rests = [
-            ("viscosity", Rest::Viscosity),
-            ("local damping", Rest::LocalDamping),
-        ];
-        for (n, (by, rest)) in meshes.into_iter().flat_map(|n| rests.map(|r| (n, r))) {
+        let rests = [Rest::Viscosity, Rest::LocalDamping];
+        for (n, rest) in meshes.into_iter().flat_map(|n| rests.map(|r| (n, r))) {
             let h = HEIGHT / f64::from(n);
             let (o, balance) = compute(h, surface, rest);
             report.table.row(&[
                 &name,
-                &by,
+                &rest.name(),
                 &h,
                 &format!("{:.6}", o.reaction),
                 &format!("{:.1e}", o.deviation),
@@ -162,7 +169,7 @@ pub fn run(fidelity: Fidelity) -> Report {
                 &format!("{:.3}", 100.0 * balance.numerical),
                 &format!("{:.1e}", balance.residual),
             ]);
-            let label = format!("{name}; {by}; h = {h} m");
+            let label = format!("{name}; {}; h = {h} m", rest.name());
             let mut check = |what: &str, value: f64, limit: f64| {
                 report.check(format!("{label}: {what}"), value, limit);
             };

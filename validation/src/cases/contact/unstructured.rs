@@ -35,6 +35,7 @@ fn exact(friction: f64) -> f64 {
 fn plan(friction: f64, surface: ContactSurface) -> Plan {
     let time = (2.0 * WAY / exact(friction)).sqrt();
     let mut plan = setup::free_body(mesh(), setup::elastic(1e6, 0.3, 2000.0), time);
+    plan.title = format!("{surface:?}, μ = {friction}").to_lowercase();
     plan.gravity = G * Vec3::new(SLOPE.sin(), 0.0, -SLOPE.cos());
     let min = Vec3::new(0.2, 0.0, BASE);
     let max = min + Vec3::new(0.4, WIDTH, 0.2);

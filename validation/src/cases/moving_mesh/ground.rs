@@ -42,6 +42,39 @@ struct Run {
 }
 
 impl Run {
+    fn name(&self) -> String {
+        format!(
+            "{}, {} integration, {}, h = {} m, {} m/s, viscosity {} s",
+            self.soil(),
+            self.integration(),
+            self.seeding(),
+            self.h,
+            self.speed,
+            self.viscosity
+        )
+    }
+
+    fn soil(&self) -> &'static str {
+        match self.plastic {
+            true => "Mohr-Coulomb",
+            false => "elastic",
+        }
+    }
+
+    fn integration(&self) -> &'static str {
+        match self.integration {
+            Integration::Mixed => "mixed",
+            Integration::Particle => "particle",
+        }
+    }
+
+    fn seeding(&self) -> &'static str {
+        match self.density {
+            Some(_) => "dense",
+            None => "four",
+        }
+    }
+
     /// Of a cell along x, m: D is a whole number of them.
     fn width(&self) -> f64 {
         D / (0.5 * D / self.h - 1e-9).ceil()
@@ -135,6 +168,7 @@ fn plan(run: &Run) -> Plan {
         k0: vec![Some(K0), None],
         surcharge: 0.0,
     });
+    plan.title = run.name();
     plan.numerics.integration = run.integration;
     plan.numerics.viscosity = run.viscosity;
     setup::bound(&mut plan, &setup::SIDES, BoundaryKind::Roller);
@@ -305,24 +339,10 @@ pub fn run(fidelity: Fidelity) -> Report {
     for (run, limited) in runs(fidelity) {
         let (o, balance) = compute(&run);
         let [zz, xx, velocity] = [&o.vertical, &o.horizontal, &o.velocity].map(|c| greatest(c));
-        let soil = if run.plastic {
-            "Mohr-Coulomb"
-        } else {
-            "elastic"
-        };
-        let integration = match run.integration {
-            Integration::Mixed => "mixed",
-            Integration::Particle => "particle",
-        };
-        let seeding = if run.density.is_some() {
-            "dense"
-        } else {
-            "four"
-        };
         report.table.row(&[
-            &soil,
-            &integration,
-            &seeding,
+            &run.soil(),
+            &run.integration(),
+            &run.seeding(),
             &run.h,
             &run.speed,
             &run.viscosity,
@@ -336,8 +356,12 @@ pub fn run(fidelity: Fidelity) -> Report {
         ]);
         let damped = if run.viscosity > 0.0 { "; viscous" } else { "" };
         let name = format!(
-            "{soil}; {integration}; {seeding}; h = {} m; {} m/s{damped}",
-            run.h, run.speed
+            "{}; {}; {}; h = {} m; {} m/s{damped}",
+            run.soil(),
+            run.integration(),
+            run.seeding(),
+            run.h,
+            run.speed
         );
         report.check(
             format!("{name}: residual of the ledger"),

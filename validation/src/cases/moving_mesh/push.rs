@@ -37,6 +37,16 @@ enum How {
     Still,
 }
 
+impl How {
+    fn name(self) -> &'static str {
+        match self {
+            How::Moving => "aligned, moving mesh",
+            How::Free => "free, fixed mesh",
+            How::Still => "aligned, fixed mesh",
+        }
+    }
+}
+
 /// `base` holds the soil below; `way` is how far the punch goes, m.
 fn plan(how: How, h: f64, friction: f64, base: bool, way: f64) -> Plan {
     let size = Vec3::new(WIDTH, h, SOIL + ROOM);
@@ -51,6 +61,11 @@ fn plan(how: How, h: f64, friction: f64, base: bool, way: f64) -> Plan {
     // 3 % of critical on the layer's first mode.
     let soil = setup::elastic(5e6, 0.3, 2000.0);
     let mut plan = setup::free_body(mesh, soil, way / SPEED);
+    plan.title = format!(
+        "{}, μ = {friction}, h = {h} m, {way:.3} m{}",
+        how.name(),
+        if base { "" } else { ", soil on nothing" }
+    );
     plan.numerics.viscosity = 5e-4;
     plan.materials.push(NamedMaterial {
         name: "steel".to_owned(),

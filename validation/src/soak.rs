@@ -5,7 +5,7 @@
 use moldwarp_io::run::{Outcome, RunOptions, resume, run};
 use moldwarp_io::scene;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
@@ -63,7 +63,7 @@ pub fn soak(arguments: &[String]) -> Result<(), Box<dyn Error>> {
 /// A whole run, and how often it was interrupted.
 fn interrupted_run(
     file: &Path,
-    folder: &PathBuf,
+    folder: &Path,
     random: &mut Random,
 ) -> Result<(Outcome, u32), Box<dyn Error>> {
     let mut options = options(folder);

@@ -82,9 +82,9 @@ pub(super) fn run(sim: &mut Simulation) -> bool {
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let body = &body[slot];
-                points.look_up(body, &model, &arrays, start);
+                points.look_up(body, model, &arrays, start);
                 strain(simd, own, &side, &mut points, &arrays, start, lanes);
-                points.update(simd, body, &model);
+                points.update(simd, body, model);
                 book(simd, own, &side, &mut points, &mut works, &mut least, lanes);
                 keep(simd, &points, &mut arrays, start, lanes);
             }

@@ -188,7 +188,7 @@ pub(crate) struct Clock {
     pub dt: f64,
     /// Coming step, s.
     pub next: f64,
-    /// Longest stable step so far, s.
+    /// Longest stable step of the stage so far, s.
     pub longest: f64,
     /// Whether bodies were given velocities, came or went, or boundaries switched, when the stage began: what
     /// moves in held directions has to stop.

@@ -13,6 +13,8 @@ impl Simulation {
     pub(crate) fn begin_stage(&mut self) -> Result<(), Stop> {
         self.clock.stage_time = 0.0;
         self.clock.stage_steps = 0;
+        // Other bodies and materials may have other steps.
+        self.clock.longest = 0.0;
         self.watch = Watch::default();
         let first = self.clock.stage == 0;
         let stage = &self.plan.stages[self.clock.stage];

@@ -118,12 +118,12 @@ fn interrupt(bench: &Bench, signal: &str) -> i32 {
     wait_for(&bench.path("out/column/history.csv"), 1);
     let said = bench.fails(2, &["resume", "out/column"]);
     assert!(said.contains("the run in out/column is going on"), "{said}");
-    let mut kill = std::process::Command::new("kill");
-    assert!(
-        kill.args([signal, &child.id().to_string()])
-            .status()
-            .unwrap()
-            .success()
-    );
+    // Twice, as `timeout` does: to the process and to its group. The second may come too late.
+    let kill = || {
+        let mut kill = std::process::Command::new("kill");
+        kill.args([signal, &child.id().to_string()]).status()
+    };
+    assert!(kill().unwrap().success());
+    let _ = kill();
     child.wait().unwrap().code().unwrap()
 }

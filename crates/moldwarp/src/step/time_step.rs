@@ -36,7 +36,7 @@ pub enum TimeStepError {
     NotFinite,
 }
 
-/// A stable step below this part of the longest there has been will not come to an end. (A mesh that moves
+/// A stable step below this part of the longest of the stage will not come to an end. (A mesh that moves
 /// compresses elements to a fiftieth.)
 const COLLAPSED: f64 = 1e-4;
 

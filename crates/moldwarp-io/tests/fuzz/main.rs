@@ -19,8 +19,13 @@ static MEMORY: memory::Bounded = memory::Bounded;
 fn the_corpus_is_read_without_a_panic() {
     for target in targets::ALL {
         let tally = runner::replay(target);
-        assert!(tally.cases >= 100, "{}: {tally:?}", target.name);
-        assert!(tally.right >= 10, "{}: {tally:?}", target.name);
+        // Checkpoints are made, not collected.
+        let (cases, right) = match target.name {
+            "checkpoint" => (1, 1),
+            _ => (100, 10),
+        };
+        let enough = tally.cases >= cases && tally.right >= right;
+        assert!(enough, "{}: {tally:?}", target.name);
     }
 }
 

@@ -9,7 +9,8 @@ use crate::measure::Scale;
 use crate::mesh::NONE;
 use crate::particles::{Order, Particles, Seed, check_overlap, inherited, particles, seeds};
 use crate::plan::{Load, Plan};
-use crate::simulation::{SetupError, Simulation, Stop};
+use crate::simulation::Simulation;
+use crate::stop::{SetupError, Stop};
 
 /// The particles at the start, not ordered, and the seeds of bodies that stages add.
 pub(crate) fn at_the_start(plan: &Plan) -> Result<(Particles, Vec<Seed>), SetupError> {

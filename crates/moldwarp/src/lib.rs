@@ -24,6 +24,7 @@ pub mod saved;
 mod simulation;
 mod stages;
 pub mod step;
+mod stop;
 mod switches;
 pub mod symmetry;
 pub mod tensor;
@@ -34,7 +35,8 @@ pub use mesh::Mesh;
 pub use particles::Particles;
 pub use plan::Plan;
 pub use query::NodeFields;
-pub use simulation::{SetupError, Simulation, Stop};
+pub use simulation::Simulation;
+pub use stop::{SetupError, Stop};
 pub use symmetry::Symmetry;
 
 /// A point, a vector: x, y, z.

@@ -6,7 +6,8 @@ use crate::material::Material;
 use crate::measure::Watch;
 use crate::mesh::{Driven, Face, Follower, Mesh, MotionError, Walls, Zones};
 use crate::plan::{Boundary, BoundaryKind, Plan, Until};
-use crate::simulation::{Simulation, Stop};
+use crate::simulation::Simulation;
+use crate::stop::Stop;
 
 impl Simulation {
     /// Makes the changes of the stage that begins, and its first half kick.

@@ -13,7 +13,8 @@ use crate::lanes::{
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{First, Sum, fold};
-use crate::simulation::{Simulation, Stop};
+use crate::simulation::Simulation;
+use crate::stop::Stop;
 use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {

@@ -2,7 +2,8 @@
 //! its velocity, and is counted.
 
 use crate::Vec3;
-use crate::simulation::{Simulation, Stop};
+use crate::simulation::Simulation;
+use crate::stop::Stop;
 
 /// Most that a particle may be put back by, as a share of its element's shortest altitude. What is
 /// farther has not slipped through by a hair: the body leaves its elements.

@@ -49,7 +49,8 @@ pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
 
 use crate::measure::Part;
-use crate::simulation::{Simulation, Stop};
+use crate::simulation::Simulation;
+use crate::stop::Stop;
 
 /// Cells or nodes that one thread works on at a time.
 const BLOCK: usize = 256;

@@ -18,16 +18,7 @@ struct Bench {
     steps: u64,
 }
 
-const SMALL: &[&str] = &[
-    "mesh.box.cells=[40, 10, 20]",
-    "numerics.time_step=1.1564e-4",
-];
-const LARGE: &[&str] = &[
-    "mesh.box.cells=[160, 40, 80]",
-    "numerics.time_step=2.891e-5",
-];
-
-const BENCHES: [Bench; 7] = [
+const BENCHES: [Bench; 13] = [
     Bench {
         name: "column",
         scene: "benches/column.toml",
@@ -50,18 +41,75 @@ const BENCHES: [Bench; 7] = [
         steps: 100,
     },
     Bench {
+        name: "contact",
+        scene: "benches/contact.toml",
+        sets: &[],
+        warm_up: 0,
+        steps: 100,
+    },
+    Bench {
         name: "column-20",
         scene: "benches/column.toml",
-        sets: SMALL,
+        sets: &[
+            "mesh.box.cells=[40, 10, 20]",
+            "numerics.time_step=1.1564e-4",
+        ],
         warm_up: 0,
         steps: 800,
     },
     Bench {
+        name: "column-60",
+        scene: "benches/column.toml",
+        sets: &[
+            "mesh.box.cells=[120, 30, 60]",
+            "numerics.time_step=3.855e-5",
+        ],
+        warm_up: 0,
+        steps: 30,
+    },
+    Bench {
         name: "column-80",
         scene: "benches/column.toml",
-        sets: LARGE,
+        sets: &[
+            "mesh.box.cells=[160, 40, 80]",
+            "numerics.time_step=2.891e-5",
+        ],
         warm_up: 0,
         steps: 12,
+    },
+    Bench {
+        name: "column-94",
+        scene: "benches/column.toml",
+        sets: &[
+            "mesh.box.cells=[188, 47, 94]",
+            "numerics.time_step=2.460e-5",
+        ],
+        warm_up: 0,
+        steps: 8,
+    },
+    Bench {
+        name: "column-120",
+        scene: "benches/column.toml",
+        sets: &[
+            "mesh.box.cells=[240, 60, 120]",
+            "numerics.time_step=1.927e-5",
+        ],
+        warm_up: 0,
+        steps: 4,
+    },
+    Bench {
+        name: "filled-100",
+        scene: "benches/column.toml",
+        sets: &["mesh.box.size=[0.5, 0.5, 1]", "mesh.box.cells=[20, 20, 40]"],
+        warm_up: 0,
+        steps: 100,
+    },
+    Bench {
+        name: "filled-5",
+        scene: "benches/column.toml",
+        sets: &["mesh.box.size=[10, 0.5, 1]", "mesh.box.cells=[400, 20, 40]"],
+        warm_up: 0,
+        steps: 100,
     },
     Bench {
         name: "anchor",
@@ -92,7 +140,10 @@ pub fn measure(names: &[String]) -> Result<(), Failure> {
     if wanted("memory") {
         println!("memory: {:.1} GB/s read and written", 1e-9 * triad());
     }
-    println!("bench         particles  filled elements   steps   million particle-steps/s");
+    println!(
+        "bench         particles  filled elements        steps   million particle-steps/s   \
+         peak of memory, bytes a particle"
+    );
     for bench in BENCHES.iter().filter(|b| wanted(b.name)) {
         run(bench)?;
     }
@@ -102,6 +153,7 @@ pub fn measure(names: &[String]) -> Result<(), Failure> {
 fn run(bench: &Bench) -> Result<(), Failure> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let sets: Vec<String> = bench.sets.iter().map(|s| s.to_string()).collect();
+    forget_peak();
     let scene = scene::load(&root.join(bench.scene), &sets)?;
     let mut sim = Simulation::new(scene.plan)?;
     for _ in 0..bench.warm_up {
@@ -113,18 +165,28 @@ fn run(bench: &Bench) -> Result<(), Failure> {
         sim.step()?;
     }
     let rate = done as f64 / start.elapsed().as_secs_f64();
+    let peak = moldwarp_io::check::peak_memory().map(|bytes| bytes as f64);
     let mut filled = sim.particles().element.clone();
     filled.dedup();
     println!(
-        "{:12} {:10}  {:8} of {:8} {:7}   {:.2}",
+        "{:12} {:10}  {:8} of {:8} {:7}   {:>24.2}   {:>32}",
         bench.name,
         sim.particles().len(),
         filled.len(),
         sim.mesh().tets.len(),
         bench.steps,
-        1e-6 * rate
+        1e-6 * rate,
+        peak.map_or("-".to_owned(), |p| format!(
+            "{:.0}",
+            p / sim.particles().len() as f64
+        ))
     );
     Ok(())
+}
+
+/// From here on the process's peak of memory counts anew, where the system can do that (Linux).
+fn forget_peak() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
 /// Bytes a second of a = b + s c over arrays that no cache holds (STREAM's triad), the best of ten.

@@ -40,6 +40,7 @@ fn plan(f: &Forecast, threads: usize) -> String {
     }));
     lines.extend(f.visit.iter().flat_map(visit));
     lines.push(steps(f));
+    lines.push(set_up(f));
     lines.push(effort(f, threads));
     lines.push(format!(
         "disk        {} in {} frames, the ends of stages and the history; {} for checkpoints on the way",
@@ -82,6 +83,17 @@ fn steps(f: &Forecast) -> String {
         number(f.stable_time_step),
         f.steps,
         number(f.end)
+    )
+}
+
+fn set_up(f: &Forecast) -> String {
+    let time = |seconds| text::duration(Duration::try_from_secs_f64(seconds).unwrap_or_default());
+    let [reading, particles] = f.set_up;
+    format!(
+        "set-up      {}: scene and mesh {}, particles {}",
+        time(reading + particles),
+        time(reading),
+        time(particles)
     )
 }
 

@@ -28,6 +28,9 @@ pub struct Forecast {
     pub end: f64,
     /// Steps, if all are as long as the first.
     pub steps: u64,
+    /// Wall time until the first step can be made, s: of reading the scene and its mesh, and of filling bodies with
+    /// particles.
+    pub set_up: [f64; 2],
     /// Wall time in the step loop by the pace of a few trial steps, s.
     pub wall_time: f64,
     /// Particles times steps per second of the trial steps.
@@ -75,7 +78,9 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
     };
     let title = scene.plan.title.clone();
     let travel = scene.travel;
+    let (reading, start) = (scene.reading, Instant::now());
     let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
+    let set_up = [reading, start.elapsed()].map(|time| time.as_secs_f64());
     let columns = columns(&sim);
     Expected::read_all(&scene.compare, &columns)?;
     let mesh = describe_quality(sim.mesh(), &scene.element_tags);
@@ -106,6 +111,7 @@ pub fn check(scene: Scene) -> Result<Forecast, RunError> {
         time_step,
         end,
         steps,
+        set_up,
         wall_time: steps as f64 * pace,
         rate: particles as f64 / pace,
         memory: peak_memory(),
@@ -179,7 +185,7 @@ fn bodies(sim: &Simulation, names: Vec<(String, String)>) -> Vec<BodyForecast> {
 }
 
 /// The process's peak resident memory, bytes, where the system tells it as Linux does.
-fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;

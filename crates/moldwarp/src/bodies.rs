@@ -21,24 +21,30 @@ pub(crate) fn at_the_start(plan: &Plan) -> Result<(Particles, Vec<Seed>), SetupE
         .collect();
     let inherits = inherited::bodies(plan);
     let all = seeds(&plan.mesh, &plan.bodies, |b| added[b] || !inherits[b])?;
-    let of = |wanted: &dyn Fn(usize) -> bool| -> Vec<Seed> {
-        let all = all.iter().copied();
-        all.filter(|s| wanted(usize::from(s.body))).collect()
-    };
-    let first = of(&|b| there[b] && !inherits[b]);
-    let first = particles(&first, &plan.mesh, &plan.bodies, &plan.materials);
+    let first = (all.iter().copied()).filter(|s| {
+        let body = usize::from(s.body);
+        there[body] && !inherits[body]
+    });
+    let first = particles(first, &plan.mesh, &plan.bodies, &plan.materials);
     check_overlap(&first, &plan.bodies, &plan.mesh)?;
     let first = inherited::append(first, plan, all.len() as u32)?;
-    let reserve = of(&|b| added[b]);
+    let reserve = (all.iter().copied())
+        .filter(|s| added[usize::from(s.body)])
+        .collect();
     for (load, later) in plan.loads.iter().enumerate().filter(|l| added[l.1.body]) {
-        let own: Vec<Seed> = of(&|b| b == later.body);
-        check_load(plan, (load, later), &own)?;
+        let own = all.iter().copied();
+        let own = own.filter(|s| usize::from(s.body) == later.body);
+        check_load(plan, (load, later), own)?;
     }
     Ok((first, reserve))
 }
 
 /// Whether the particles of a body that comes later will be next to all faces of its load.
-fn check_load(plan: &Plan, load: (usize, &Load), seeds: &[Seed]) -> Result<(), SetupError> {
+fn check_load(
+    plan: &Plan,
+    load: (usize, &Load),
+    seeds: impl Iterator<Item = Seed> + Clone,
+) -> Result<(), SetupError> {
     let particles = particles(seeds, &plan.mesh, &plan.bodies, &plan.materials);
     let order = Order::of(&particles.element, plan.mesh.tets.len());
     let ground = stress_free(plan);
@@ -100,7 +106,12 @@ impl Simulation {
         self.check_room(&seeds)?;
         self.take_away();
         let plan = &self.plan;
-        let new = particles(&seeds, &plan.mesh, &plan.bodies, &plan.materials);
+        let new = particles(
+            seeds.iter().copied(),
+            &plan.mesh,
+            &plan.bodies,
+            &plan.materials,
+        );
         self.present += new.len() as u64;
         self.particles.append(new);
         if !self.plan.contacts.is_empty() {

@@ -7,7 +7,7 @@ use crate::boundary::{
 };
 use crate::contact::{Contacts, Fields, is_rigid};
 use crate::lanes::Simd;
-use crate::measure::{Ledger, Probes, Profile, Scale, Watch};
+use crate::measure::{Ledger, Part, Probes, Profile, Scale, Watch};
 use crate::mesh::{Driven, Follower, Walls};
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{Order, Particles, Seed, SeedingError};
@@ -181,6 +181,11 @@ impl Simulation {
         &self.profile
     }
 
+    /// What was done since the last step was output: the profile keeps its time apart.
+    pub fn wrote_output(&mut self) {
+        self.profile.lap(Part::Output);
+    }
+
     /// Gives every particle the velocity (m/s) that `velocity` has at its position (m). For the
     /// start of a run, before the first step.
     pub fn set_velocity(&mut self, velocity: impl Fn(Vec3) -> Vec3) -> Result<(), Stop> {
@@ -218,7 +223,9 @@ impl Simulation {
         if !at_rest {
             self.has_to_be_at_rest()?;
         }
+        self.profile.lap(Part::Between);
         ended(self);
+        self.profile.lap(Part::Output);
         self.clock.stage += 1;
         if self.finished() {
             Ok(())

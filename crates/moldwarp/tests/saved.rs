@@ -5,14 +5,15 @@ use moldwarp::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParame
 use moldwarp::mesh::{VolumeGroup, box_mesh};
 use moldwarp::particles::InitialStress;
 use moldwarp::plan::*;
+use moldwarp::saved::Section;
 use moldwarp::{Mesh, Plan, Simulation, Vec3};
 
 type Sections = Vec<(&'static str, Vec<u8>)>;
 
 fn save(sim: &Simulation) -> Sections {
     let mut all = Sections::new();
-    let keep = |name, bytes: &[u8]| -> Result<(), ()> {
-        all.push((name, bytes.to_vec()));
+    let keep = |name, section: Section| -> Result<(), ()> {
+        all.push((name, section.to_bytes()));
         Ok(())
     };
     sim.save(keep).unwrap();

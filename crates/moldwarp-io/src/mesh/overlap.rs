@@ -30,13 +30,11 @@ pub fn check_overlap(mesh: &Mesh, element_tags: &[u64]) -> Result<(), Overlap> {
             let Some(other) = mesh.across(face).filter(|o| o.element > element) else {
                 continue;
             };
-            let corner = |e: u32, local: u8| mesh.corners(e as usize)[usize::from(local)];
-            // Any corner but the opposite one is on the face.
-            let on_it = corner(element, (local + 1) % 4);
-            let normal = mesh.face_area(face);
-            let side = |x| normal.dot(x - on_it);
-            let own = side(corner(element, local));
-            if own * side(corner(other.element, other.local)) > 0.0 {
+            // Seen from outside an element its faces run counter-clockwise. From both sides of a face one
+            // of the two runs is the other way round.
+            let [a, b, c] = mesh.face_nodes(face);
+            let [d, e, f] = mesh.face_nodes(other);
+            if [[a, b, c], [b, c, a], [c, a, b]].contains(&[d, e, f]) {
                 let tag = |e: u32| element_tags[e as usize];
                 return Err(Overlap {
                     first: tag(element),

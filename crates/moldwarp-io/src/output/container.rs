@@ -10,6 +10,7 @@
 //! Numbers are little-endian.
 
 use super::FileError;
+use moldwarp::saved::Section;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -38,10 +39,28 @@ impl<W: Write> Sections<W> {
 
     /// Adds a section.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        self.begin_section(name, bytes.len())?;
+        self.put(bytes)
+    }
+
+    /// Adds a section that is made piece by piece.
+    pub fn add_pieces(&mut self, name: &str, section: &Section) -> io::Result<()> {
+        self.begin_section(name, section.size())?;
+        let (mut written, mut left) = (Ok(()), section.size());
+        section.pieces(&mut |piece| {
+            left = left.wrapping_sub(piece.len());
+            if written.is_ok() {
+                written = self.put(piece);
+            }
+        });
+        assert!(left == 0, "section {name} is not of the size it said");
+        written
+    }
+
+    fn begin_section(&mut self, name: &str, size: usize) -> io::Result<()> {
         self.put(&(name.len() as u32).to_le_bytes())?;
         self.put(name.as_bytes())?;
-        self.put(&(bytes.len() as u64).to_le_bytes())?;
-        self.put(bytes)
+        self.put(&(size as u64).to_le_bytes())
     }
 
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
@@ -172,7 +191,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.checkpoint");
         write(&path, |sections| {
-            sections.add("numbers", &[1, 2, 3])?;
+            sections.add_pieces("numbers", &Section::new(&[1u8, 2, 3]))?;
             sections.add("nothing", &[])
         })
         .unwrap();

@@ -1,5 +1,6 @@
 //! Fingerprints by which two scenes, or the final states of two runs, are told to be the same.
 
+use moldwarp::saved::{Out, Saved, Section};
 use moldwarp::{Particles, Plan, Vec3};
 
 /// BLAKE3 over named arrays of little-endian values.
@@ -16,27 +17,39 @@ impl Hasher {
 
     /// Adds an array of numbers; -0 and 0 differ, as bits do.
     pub fn floats(&mut self, name: &str, values: impl ExactSizeIterator<Item = f64>) {
-        self.begin(name, values.len());
-        values.for_each(|v| {
-            self.0.update(&v.to_le_bytes());
-        });
+        self.values(name, values, |out, v| out.put(&v.to_le_bytes()));
     }
 
     /// Adds an array of vectors.
     pub fn vectors(&mut self, name: &str, values: impl ExactSizeIterator<Item = Vec3>) {
-        self.begin(name, values.len());
-        values.for_each(|v| {
-            v.to_array().iter().for_each(|x| {
-                self.0.update(&x.to_le_bytes());
-            });
-        });
+        self.values(name, values, |out, v| v.save(out));
     }
 
     /// Adds an array of whole numbers.
     pub fn numbers(&mut self, name: &str, values: impl ExactSizeIterator<Item = u64>) {
+        self.values(name, values, |out, v| out.put(&v.to_le_bytes()));
+    }
+
+    fn values<T>(
+        &mut self,
+        name: &str,
+        values: impl ExactSizeIterator<Item = T>,
+        put: impl Fn(&mut Out, T),
+    ) {
         self.begin(name, values.len());
-        values.for_each(|v| {
-            self.0.update(&v.to_le_bytes());
+        let mut add = |bytes: &[u8]| {
+            self.0.update(bytes);
+        };
+        let mut out = Out::new(&mut add);
+        values.for_each(|v| put(&mut out, v));
+        out.finish();
+    }
+
+    /// Adds a part of a state.
+    pub fn section(&mut self, name: &str, section: &Section) {
+        self.begin(name, section.size());
+        section.pieces(&mut |bytes| {
+            self.0.update(bytes);
         });
     }
 

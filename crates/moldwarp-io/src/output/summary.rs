@@ -33,7 +33,8 @@ pub struct Summary {
     /// From the start of the program's run to its end, s; of a run that was resumed that of all its
     /// parts, up to the checkpoints that they went on from.
     pub wall_time: f64,
-    /// Particles times steps over the seconds spent in the step loop alone.
+    /// Particles times steps over the seconds spent in the steps alone, without set-up and without what is written
+    /// before, between and after them.
     pub particle_steps_per_second: f64,
     /// Least step, s; null if there was none.
     pub min_dt: Option<f64>,

@@ -2,10 +2,12 @@
 //!
 //! The header names every array with its offset into one block at the file's end, where each
 //! array stands as its length in bytes (UInt64) and its values, little endian. Nothing is
-//! encoded or compressed: a frame is written as fast as the disk takes it.
+//! encoded or compressed: a frame is written as fast as the disk takes it. Values that are computed
+//! are so as they are written, and never all in memory.
 
 use super::{FileError, write_whole};
 use moldwarp::Vec3;
+use moldwarp::tensor::Voigt;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -17,6 +19,30 @@ const TETRA: u8 = 10;
 /// Names of a symmetric tensor's components: our order, which is VTK's too.
 const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 
+/// Values that are computed when they are written.
+#[derive(Clone, Copy)]
+pub struct Each<'a, T> {
+    pub count: usize,
+    /// The value at a place.
+    pub value: &'a dyn Fn(usize) -> T,
+}
+
+impl<T> std::fmt::Debug for Each<'_, T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{} values", self.count)
+    }
+}
+
+impl<'a, T> Each<'a, T> {
+    pub fn new(count: usize, value: &'a dyn Fn(usize) -> T) -> Each<'a, T> {
+        Each { count, value }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = T> {
+        (0..self.count).map(self.value)
+    }
+}
+
 /// Values of an array, one entry a point (or cell).
 #[derive(Clone, Copy, Debug)]
 pub enum Data<'a> {
@@ -26,8 +52,10 @@ pub enum Data<'a> {
     U16(&'a [u16]),
     U8(&'a [u8]),
     Vectors(&'a [Vec3]),
+    EachF64(Each<'a, f64>),
+    EachVector(Each<'a, Vec3>),
     /// Symmetric tensors xx, yy, zz, xy, yz, zx.
-    Tensors(&'a [[f64; 6]]),
+    EachTensor(Each<'a, Voigt>),
     /// Cells' nodes, written as Int64.
     Tets(&'a [[u32; 4]]),
     /// first, first + step, … as Int64: what an offset array or a list of vertices is.
@@ -88,7 +116,11 @@ impl Texts<'_> {
 impl Data<'_> {
     fn type_name(&self) -> &'static str {
         match self {
-            Data::F64(_) | Data::Vectors(_) | Data::Tensors(_) => "Float64",
+            Data::F64(_)
+            | Data::Vectors(_)
+            | Data::EachF64(_)
+            | Data::EachVector(_)
+            | Data::EachTensor(_) => "Float64",
             Data::U64(_) => "UInt64",
             Data::U32(_) => "UInt32",
             Data::U16(_) => "UInt16",
@@ -99,8 +131,8 @@ impl Data<'_> {
 
     fn components(&self) -> usize {
         match self {
-            Data::Vectors(_) => 3,
-            Data::Tensors(_) => 6,
+            Data::Vectors(_) | Data::EachVector(_) => 3,
+            Data::EachTensor(_) => 6,
             _ => 1,
         }
     }
@@ -113,7 +145,9 @@ impl Data<'_> {
             Data::U16(v) => 2 * v.len(),
             Data::U8(v) => v.len(),
             Data::Vectors(v) => 24 * v.len(),
-            Data::Tensors(v) => 48 * v.len(),
+            Data::EachF64(v) => 8 * v.count,
+            Data::EachVector(v) => 24 * v.count,
+            Data::EachTensor(v) => 48 * v.count,
             Data::Tets(v) => 32 * v.len(),
             Data::Steps { count, .. } => 8 * count,
             Data::Same { count, .. } => *count,
@@ -121,34 +155,51 @@ impl Data<'_> {
     }
 
     fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        let vector = |piece: &mut Vec<u8>, x: Vec3| floats(piece, &x.to_array());
         match *self {
-            Data::F64(v) => put(out, v, |x| x.to_le_bytes()),
-            Data::U64(v) => put(out, v, |x| x.to_le_bytes()),
-            Data::U32(v) => put(out, v, |x| x.to_le_bytes()),
-            Data::U16(v) => put(out, v, |x| x.to_le_bytes()),
+            Data::F64(v) => put(out, v.iter(), |piece, x| floats(piece, &[*x])),
+            Data::U64(v) => put(out, v.iter(), |piece, x| piece.extend(x.to_le_bytes())),
+            Data::U32(v) => put(out, v.iter(), |piece, x| piece.extend(x.to_le_bytes())),
+            Data::U16(v) => put(out, v.iter(), |piece, x| piece.extend(x.to_le_bytes())),
             Data::U8(v) => out.write_all(v),
-            Data::Vectors(v) => {
-                for x in v {
-                    put(out, &x.to_array(), |x| x.to_le_bytes())?;
-                }
-                Ok(())
-            }
-            Data::Tensors(v) => put(out, v.as_flattened(), |x| x.to_le_bytes()),
-            Data::Tets(v) => put(out, v.as_flattened(), |&n| i64::from(n).to_le_bytes()),
-            Data::Steps { first, step, count } => {
-                (0..count as i64).try_for_each(|i| out.write_all(&(first + i * step).to_le_bytes()))
-            }
-            Data::Same { value, count } => (0..count).try_for_each(|_| out.write_all(&[value])),
+            Data::Vectors(v) => put(out, v.iter().copied(), vector),
+            Data::EachF64(v) => put(out, v.iter(), |piece, x| floats(piece, &[x])),
+            Data::EachVector(v) => put(out, v.iter(), vector),
+            Data::EachTensor(v) => put(out, v.iter(), |piece, x| floats(piece, &x)),
+            Data::Tets(v) => put(out, v.iter(), |piece, tet| {
+                let nodes = tet.map(|n| i64::from(n).to_le_bytes());
+                piece.extend_from_slice(nodes.as_flattened());
+            }),
+            Data::Steps { first, step, count } => put(out, 0..count as i64, |piece, i| {
+                piece.extend((first + i * step).to_le_bytes());
+            }),
+            Data::Same { value, count } => put(out, 0..count, |piece, _| piece.push(value)),
         }
     }
 }
 
-fn put<T, const N: usize>(
+/// Bytes that are put together before they are written.
+const PIECE: usize = 1 << 16;
+
+/// Writes values piece by piece; `add` appends one.
+fn put<T>(
     out: &mut impl Write,
-    values: &[T],
-    bytes: impl Fn(&T) -> [u8; N],
+    values: impl Iterator<Item = T>,
+    add: impl Fn(&mut Vec<u8>, T),
 ) -> io::Result<()> {
-    values.iter().try_for_each(|v| out.write_all(&bytes(v)))
+    let mut piece = Vec::with_capacity(PIECE + 64);
+    for value in values {
+        add(&mut piece, value);
+        if piece.len() >= PIECE {
+            out.write_all(&piece)?;
+            piece.clear();
+        }
+    }
+    out.write_all(&piece)
+}
+
+fn floats<const N: usize>(piece: &mut Vec<u8>, numbers: &[f64; N]) {
+    piece.extend_from_slice(numbers.map(f64::to_le_bytes).as_flattened());
 }
 
 /// Writes points, each a cell of its own, with fields, and texts for the whole.
@@ -157,11 +208,11 @@ fn put<T, const N: usize>(
 pub fn write_points(
     path: &Path,
     time: f64,
-    positions: &[Vec3],
+    positions: Each<Vec3>,
     fields: &[Array],
     texts: &[Texts],
 ) -> Result<(), FileError> {
-    let count = positions.len();
+    let count = positions.count;
     let steps = |first| Data::Steps {
         first,
         step: 1,
@@ -179,6 +230,7 @@ pub fn write_points(
             "",
         ),
     ];
+    let positions = Data::EachVector(positions);
     write(path, (time, texts), positions, fields, &cells)
 }
 
@@ -210,19 +262,19 @@ pub fn write_mesh(
             "",
         ),
     ];
-    write(path, (time, &[]), nodes, fields, &cells)
+    write(path, (time, &[]), Data::Vectors(nodes), fields, &cells)
 }
 
 fn write(
     path: &Path,
     (time, texts): (f64, &[Texts]),
-    points: &[Vec3],
+    points: Data,
     fields: &[Array],
     cells: &[Array; 3],
 ) -> Result<(), FileError> {
     let time = [time];
     let time = Array::new("TimeValue", Data::F64(&time), "s");
-    let points = Array::new("Points", Data::Vectors(points), "m");
+    let points = Array::new("Points", points, "m");
     let arrays: Vec<&Array> = [&time, &points]
         .into_iter()
         .chain(cells)
@@ -314,6 +366,7 @@ mod tests {
         let path = dir.path().join("p.vtu");
         let x = [Vec3::new(0.1, -2.0, 1e-300), Vec3::ONE];
         let stress = [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [-0.5; 6]];
+        let (position, tensor) = (|i: usize| x[i], |i: usize| stress[i]);
         let fields = [
             Array::new("id", Data::U32(&[7, 9]), ""),
             Array::new("seed", Data::U64(&[1 << 40, 2]), ""),
@@ -324,7 +377,8 @@ mod tests {
                 Data::F64(&[5.0, -0.25]),
                 "Pa, < 0 & \"pulled\"",
             ),
-            Array::new("stress", Data::Tensors(&stress), "Pa"),
+            Array::new("stress", Data::EachTensor(Each::new(2, &tensor)), "Pa"),
+            Array::new("mass", Data::EachF64(Each::new(2, &|i| i as f64)), "kg"),
         ];
         let names = [
             "stage 1".to_owned(),
@@ -335,7 +389,7 @@ mod tests {
             name: "names",
             values: &names,
         };
-        write_points(&path, 0.125, &x, &fields, &[texts]).unwrap();
+        write_points(&path, 0.125, Each::new(2, &position), &fields, &[texts]).unwrap();
 
         let frame = read(&path).unwrap();
         assert_eq!(frame.time, 0.125);
@@ -351,6 +405,7 @@ mod tests {
         let read_stress = frame.field("stress").unwrap();
         assert_eq!(read_stress.components, 6);
         assert_eq!(read_stress.values, stress.as_flattened());
+        assert_eq!(frame.field("mass").unwrap().values, [0.0, 1.0]);
         assert!(frame.field("strain").is_none());
     }
 
@@ -381,7 +436,7 @@ mod tests {
         write_points(
             &path,
             0.0,
-            &[],
+            Each::new(0, &|_| Vec3::ZERO),
             &[Array::new("v", Data::Vectors(&[]), "m/s")],
             &[],
         )

@@ -3,7 +3,7 @@
 use super::markdown::{code, table as markdown};
 use super::source::{Entry, enum_named, struct_named};
 use crate::output::vtu::Data;
-use crate::run::{FIRST, Field, NODE_FIELDS, PARTICLE_FIELDS};
+use crate::run::{FIRST, Field, NODE_FIELDS, OfParticles, PARTICLE_FIELDS};
 use moldwarp::NodeFields;
 use moldwarp::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParameters, StateField};
 use moldwarp::measure::Energies;
@@ -15,9 +15,12 @@ const SUMMARY: &str = "crates/moldwarp-io/src/output/summary.rs";
 pub fn table(directive: &[&str]) -> String {
     match directive {
         ["particle-fields"] => {
-            let (particles, derived) = (Particles::default(), Default::default());
-            fields(&PARTICLE_FIELDS, |values| {
-                shape(values(&particles, &derived))
+            let particles = Particles::default();
+            fields(&PARTICLE_FIELDS, |values| match values {
+                OfParticles::Numbers(all) => shape(all(&particles)),
+                OfParticles::Scalar(_) => "scalar",
+                OfParticles::Vector(_) => "vector",
+                OfParticles::Tensor(_) => "XX YY ZZ XY YZ XZ",
             })
         }
         ["state-fields"] => state_fields(),
@@ -62,9 +65,9 @@ fn fields<V: Copy>(fields: &[Field<V>], shape: impl Fn(V) -> &'static str) -> St
 fn shape(data: Data) -> &'static str {
     match data {
         Data::U64(_) | Data::U32(_) | Data::U16(_) | Data::U8(_) => "integer",
-        Data::F64(_) => "scalar",
-        Data::Vectors(_) => "vector",
-        Data::Tensors(_) => "XX YY ZZ XY YZ XZ",
+        Data::F64(_) | Data::EachF64(_) => "scalar",
+        Data::Vectors(_) | Data::EachVector(_) => "vector",
+        Data::EachTensor(_) => "XX YY ZZ XY YZ XZ",
         Data::Tets(_) | Data::Steps { .. } | Data::Same { .. } => "cells",
     }
 }

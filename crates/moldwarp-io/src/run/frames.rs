@@ -1,7 +1,7 @@
 //! ParaView frames of a simulation.
 
 use crate::output::pvd::Collection;
-use crate::output::vtu::{self, Array, Data, Texts};
+use crate::output::vtu::{self, Array, Data, Each, Texts};
 use crate::output::{FileError, Folder, sync};
 use moldwarp::NodeFields;
 use moldwarp::material::StateField;
@@ -95,18 +95,46 @@ pub(crate) struct Field<V> {
     pub values: V,
 }
 
-type OfParticles = for<'a> fn(&'a Particles, &'a Derived) -> Data<'a>;
 type OfNodes = for<'a> fn(&'a NodeFields) -> Data<'a>;
 
-/// What is computed from the particles for a frame, or put together.
-#[derive(Default)]
-pub(crate) struct Derived {
-    velocity: Vec<Vec3>,
-    displacement: Vec<Vec3>,
-    stress: Vec<Voigt>,
-    pressure: Vec<f64>,
-    deviatoric: Vec<f64>,
-    density: Vec<f64>,
+/// Where an array of the particles comes from.
+#[derive(Clone, Copy)]
+pub(crate) enum OfParticles {
+    Numbers(for<'a> fn(&'a Particles) -> Data<'a>),
+    Scalar(fn(&Particles, usize) -> f64),
+    Vector(fn(&Particles, usize) -> Vec3),
+    Tensor(fn(&Particles, usize) -> Voigt),
+}
+
+/// The same with the particles: what writes each value when it comes to it.
+enum Values<'a> {
+    Numbers(Data<'a>),
+    Scalar(Box<dyn Fn(usize) -> f64 + 'a>),
+    Vector(Box<dyn Fn(usize) -> Vec3 + 'a>),
+    Tensor(Box<dyn Fn(usize) -> Voigt + 'a>),
+}
+
+impl OfParticles {
+    fn values<'a>(&self, p: &'a Particles) -> Values<'a> {
+        match *self {
+            OfParticles::Numbers(all) => Values::Numbers(all(p)),
+            OfParticles::Scalar(of) => Values::Scalar(Box::new(move |i| of(p, i))),
+            OfParticles::Vector(of) => Values::Vector(Box::new(move |i| of(p, i))),
+            OfParticles::Tensor(of) => Values::Tensor(Box::new(move |i| of(p, i))),
+        }
+    }
+}
+
+impl Values<'_> {
+    /// Of this many particles.
+    fn data(&self, count: usize) -> Data<'_> {
+        match self {
+            Values::Numbers(data) => *data,
+            Values::Scalar(of) => Data::EachF64(Each::new(count, of)),
+            Values::Vector(of) => Data::EachVector(Each::new(count, of)),
+            Values::Tensor(of) => Data::EachTensor(Each::new(count, of)),
+        }
+    }
 }
 
 /// Of the particles, before the state variables of their models.
@@ -115,49 +143,49 @@ pub(crate) const PARTICLE_FIELDS: [Field<OfParticles>; 8] = [
         name: "id",
         label: "",
         meaning: "Number; never changes. Bodies that are not there have theirs reserved.",
-        values: |p, _| Data::U32(&p.id),
+        values: OfParticles::Numbers(|p| Data::U32(&p.id)),
     },
     Field {
         name: "body",
         label: "",
         meaning: "Number of the body, from 0 in the order of the scene.",
-        values: |p, _| Data::U16(&p.body),
+        values: OfParticles::Numbers(|p| Data::U16(&p.body)),
     },
     Field {
         name: "velocity",
         label: "m/s",
         meaning: "Of the middle of the coming step; at the end of the run of that instant.",
-        values: |_, d| Data::Vectors(&d.velocity),
+        values: OfParticles::Vector(|p, i| p.velocity.at(i)),
     },
     Field {
         name: "displacement",
         label: "m",
         meaning: "Since the start, or since a stage has reset it.",
-        values: |_, d| Data::Vectors(&d.displacement),
+        values: OfParticles::Vector(Particles::displacement),
     },
     Field {
         name: "stress",
         label: "Pa, tension positive",
         meaning: "Cauchy stress σ.",
-        values: |_, d| Data::Tensors(&d.stress),
+        values: OfParticles::Tensor(|p, i| p.stress.at(i)),
     },
     Field {
         name: "mean_pressure",
         label: "Pa, compression positive",
         meaning: "−tr σ/3.",
-        values: |_, d| Data::F64(&d.pressure),
+        values: OfParticles::Scalar(|p, i| mean_pressure(&p.stress.at(i))),
     },
     Field {
         name: "deviatoric_stress",
         label: "Pa, sqrt(3/2 s:s)",
         meaning: "q = √(3/2 s : s), s the deviator of σ.",
-        values: |_, d| Data::F64(&d.deviatoric),
+        values: OfParticles::Scalar(|p, i| tensor::equivalent(&p.stress.at(i))),
     },
     Field {
         name: "density",
         label: "kg/m3",
         meaning: "m_p/V_p.",
-        values: |_, d| Data::F64(&d.density),
+        values: OfParticles::Scalar(|p, i| p.mass[i] / p.volume[i]),
     },
 ];
 
@@ -193,50 +221,43 @@ pub(super) fn write_particles(
     texts: &[Texts],
 ) -> Result<(), FileError> {
     let p = sim.particles();
-    let derived = Derived {
-        velocity: p.velocity.iter().collect(),
-        displacement: p.displacements().collect(),
-        stress: p.stress.iter().collect(),
-        pressure: p.stress.iter().map(|s| mean_pressure(&s)).collect(),
-        deviatoric: p.stress.iter().map(|s| tensor::equivalent(&s)).collect(),
-        density: p.mass.iter().zip(&p.volume).map(|(m, v)| m / v).collect(),
-    };
-    let states = state_fields(sim);
-    let own = PARTICLE_FIELDS
-        .iter()
-        .map(|f| Array::new(f.name, (f.values)(p, &derived), f.label));
-    let of_models = states
-        .iter()
-        .map(|(field, values)| Array::new(field.name, Data::F64(values), field.unit));
-    let fields: Vec<Array> = own.chain(of_models).chain(more.iter().copied()).collect();
-    let positions: Vec<Vec3> = p.position.iter().collect();
-    vtu::write_points(path, time, &positions, &fields, texts)
+    let count = p.len();
+    let own = (PARTICLE_FIELDS.iter()).map(|f| (f.name, f.label, f.values.values(p)));
+    let of_models = state_fields(sim).into_iter();
+    let values: Vec<_> = own
+        .chain(of_models.map(|(field, values)| (field.name, field.unit, values)))
+        .collect();
+    let fields: Vec<Array> = (values.iter())
+        .map(|(name, label, values)| Array::new(name, values.data(count), label))
+        .chain(more.iter().copied())
+        .collect();
+    let position = |i| p.position.at(i);
+    vtu::write_points(path, time, Each::new(count, &position), &fields, texts)
 }
 
 /// The state variables of all models by name; 0 for particles of models that have none of a name.
-fn state_fields(sim: &Simulation) -> Vec<(StateField, Vec<f64>)> {
+fn state_fields(sim: &Simulation) -> Vec<(StateField, Values<'_>)> {
     let (plan, particles) = (sim.plan(), sim.particles());
-    let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
     let mut fields: Vec<StateField> = Vec::new();
     for field in plan.materials.iter().flat_map(|m| m.model.state_fields()) {
         if fields.iter().all(|f| f.name != field.name) {
             fields.push(*field);
         }
     }
-    let value = |p: usize, name: &str| {
-        let own = model(particles.body[p]).state_fields();
-        let at = own.iter().position(|f| f.name == name);
-        at.map_or(0.0, |at| particles.state.at(p)[at])
+    let values = |field: StateField| {
+        // Which of its numbers it is, for each body.
+        let of_body = plan.bodies.iter().map(|body| {
+            let own = plan.materials[body.material].model.state_fields();
+            own.iter().position(|f| f.name == field.name)
+        });
+        let of_body: Vec<Option<usize>> = of_body.collect();
+        let value = move |p: usize| {
+            let at = of_body[usize::from(particles.body[p])];
+            at.map_or(0.0, |at| particles.state.components()[at][p])
+        };
+        (field, Values::Scalar(Box::new(value)))
     };
-    fields
-        .into_iter()
-        .map(|field| {
-            (
-                field,
-                (0..particles.len()).map(|p| value(p, field.name)).collect(),
-            )
-        })
-        .collect()
+    fields.into_iter().map(values).collect()
 }
 
 fn write_mesh(sim: &Simulation, time: f64, path: &std::path::Path) -> Result<(), FileError> {

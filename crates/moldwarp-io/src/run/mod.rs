@@ -22,7 +22,7 @@ pub use state::state_hash;
 pub(crate) use checkpoint::checkpoint_bytes;
 pub(crate) use frames::frame_bytes;
 #[cfg(test)]
-pub(crate) use frames::{Field, NODE_FIELDS, PARTICLE_FIELDS};
+pub(crate) use frames::{Field, NODE_FIELDS, OfParticles, PARTICLE_FIELDS};
 #[cfg(test)]
 pub(crate) use history::FIRST;
 pub(crate) use history::{Expected, columns};
@@ -206,7 +206,7 @@ pub fn run(
     }
     let title = scene.plan.title.clone();
     let scene_hash = scene_hash(&scene.plan);
-    let mesh = scene.plan.mesh.clone();
+    let nodes = scene.plan.mesh.nodes.clone();
     let mut sim = simulation(scene.plan, &scene.origin, &scene.text)?;
     if let Some(simd) = options.simd {
         sim.use_simd(simd);
@@ -237,8 +237,7 @@ pub fn run(
         references: Expected::references(&expected),
     };
     let interval = scene.output.checkpoints;
-    let checkpoints = Checkpoints::new(&folder, (&beginning, &mesh), 0, interval, start);
-    drop(mesh);
+    let checkpoints = Checkpoints::new(&folder, (&beginning, nodes), 0, interval, start);
     let end = end_time(&sim);
     let books = Books {
         recorder: Recorder::new(&scene.output, end, &folder, &columns, expected)?,

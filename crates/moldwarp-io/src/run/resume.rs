@@ -21,21 +21,21 @@ use std::time::{Duration, Instant};
 /// If it cannot be used.
 pub fn read_checkpoint(bytes: Vec<u8>) -> Result<u64, RunError> {
     let checkpoint = Checkpoint::of(bytes)?;
-    let (scene, _) = scene(&checkpoint, &checkpoint.mesh()?, Path::new("."), &[])?;
+    let (scene, _) = scene(&checkpoint, checkpoint.mesh()?, Path::new("."), &[])?;
     Ok(state(&checkpoint, scene.plan)?.steps())
 }
 
 /// The scene as run, with changes, and its output before them.
 fn scene(
     checkpoint: &Checkpoint,
-    mesh: &Mesh,
+    mesh: Mesh,
     path: &Path,
     sets: &[String],
 ) -> Result<(Scene, OutputSettings), SceneError> {
     let of_run = Kept {
         text: &checkpoint.beginning.text,
         case: &checkpoint.beginning.case,
-        mesh: mesh.clone(),
+        mesh,
     };
     kept(of_run, path, sets, checkpoint.stage)
 }
@@ -75,7 +75,8 @@ pub fn resume(
     }
     let (checkpoint, problems) = Checkpoint::newest(&folder)?;
     let mesh = checkpoint.mesh()?;
-    let (scene, output) = scene(&checkpoint, &mesh, path, sets)?;
+    let nodes = mesh.nodes.clone();
+    let (scene, output) = scene(&checkpoint, mesh, path, sets)?;
     let title = scene.plan.title.clone();
     let mut sim = state(&checkpoint, scene.plan)?;
     check_end(&sim)?;
@@ -117,12 +118,11 @@ pub fn resume(
     folder.remove_stages_from(sim.stage())?;
     let checkpoints = Checkpoints::new(
         &folder,
-        (&beginning, &mesh),
+        (&beginning, nodes),
         generation,
         scene.output.checkpoints,
         start,
     );
-    drop(mesh);
     let mut notes = problems;
     notes.push(format!("resumed at step {}", sim.steps()));
     observer.begin(&sim, &folder, &notes);

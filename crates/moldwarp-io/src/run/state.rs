@@ -11,9 +11,9 @@ use std::convert::Infallible;
 pub fn state_hash(sim: &Simulation) -> String {
     let mut h = Hasher::new();
     particles(&mut h, sim.particles());
-    let Ok(()) = sim.save(|name, bytes| {
+    let Ok(()) = sim.save(|name, section| {
         if name != "particles" {
-            h.bytes(name, bytes);
+            h.section(name, &section);
         }
         Ok::<(), Infallible>(())
     });
@@ -35,9 +35,9 @@ fn particles(h: &mut Hasher, particles: &Particles) {
         initial_volume,
         mass,
     } = particles;
-    let mut order: Vec<usize> = (0..id.len()).collect();
-    order.sort_unstable_by_key(|&p| id[p]);
-    let by_id = || order.iter().copied();
+    let mut order: Vec<u32> = (0..id.len() as u32).collect();
+    order.sort_unstable_by_key(|&p| id[p as usize]);
+    let by_id = || order.iter().map(|&p| p as usize);
     h.numbers("id", by_id().map(|p| id[p].into()));
     h.numbers("body", by_id().map(|p| body[p].into()));
     h.numbers("element", by_id().map(|p| element[p].into()));
@@ -58,7 +58,7 @@ fn particles(h: &mut Hasher, particles: &Particles) {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use moldwarp::saved::{Saved, load};
+    use moldwarp::saved::{load, to_bytes};
 
     /// A loaded column on an absorbing boundary, with a probe.
     pub const SCENE: &str = r#"
@@ -111,8 +111,7 @@ pub(super) mod tests {
     #[test]
     fn a_flipped_bit_of_a_particle_gives_another_hash() {
         let sim = column();
-        let mut bytes = Vec::new();
-        sim.particles().save(&mut bytes);
+        let mut bytes = to_bytes(sim.particles());
         let (whole, count) = (hash(sim.particles()), bytes.len());
         let mut flipped = 0;
         // A stride that shares no factor with the sizes of numbers hits every array and every bit.
@@ -134,8 +133,8 @@ pub(super) mod tests {
         let sim = column();
         let of = |flip: Option<(&str, usize)>| {
             let mut h = Hasher::new();
-            let Ok(()) = sim.save(|name, bytes| {
-                let mut bytes = bytes.to_vec();
+            let Ok(()) = sim.save(|name, section| {
+                let mut bytes = section.to_bytes();
                 if let Some((_, bit)) = flip.filter(|f| f.0 == name) {
                     bytes[bit / 8] ^= 1 << (bit % 8);
                 }
@@ -146,8 +145,8 @@ pub(super) mod tests {
         };
         let whole = of(None);
         let mut sections = Vec::new();
-        let Ok(()) = sim.save(|name, bytes| {
-            sections.push((name, 8 * bytes.len()));
+        let Ok(()) = sim.save(|name, section| {
+            sections.push((name, 8 * section.size()));
             Ok::<(), Infallible>(())
         });
         assert!(sections.len() > 20);

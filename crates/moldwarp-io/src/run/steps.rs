@@ -46,7 +46,8 @@ impl Pace {
         self.bounds = Some([low.min(time_step), high.max(time_step)]);
     }
 
-    /// Particles times steps per second.
+    /// Particles times steps per second of wall time in the steps; what is written between them, and at the
+    /// ends of stages, does not count.
     pub fn rate(&self) -> f64 {
         if self.seconds > 0.0 {
             self.particle_steps / self.seconds
@@ -98,6 +99,7 @@ pub(super) fn steps(
         books.recorder.record(sim)?;
     }
     books.checkpoint(sim)?;
+    sim.wrote_output();
     while !sim.finished() {
         if let Some(signal) = interrupt.asked() {
             books.checkpoint(sim)?;
@@ -105,9 +107,13 @@ pub(super) fn steps(
         }
         let (begun, particles, stage) = (Instant::now(), sim.particles().len(), sim.stage());
         let (time, dt) = (sim.time(), sim.next_time_step());
-        let mut stage_file = Ok(());
+        let (mut stage_file, mut writing) = (Ok(()), Duration::ZERO);
         let folder = books.recorder.folder();
-        let step = sim.step_and(|sim| stage_file = stage_files::write(sim, folder));
+        let step = sim.step_and(|sim| {
+            let start = Instant::now();
+            stage_file = stage_files::write(sim, folder);
+            writing = start.elapsed();
+        });
         let now = Instant::now();
         stage_file?;
         if let Err(stop) = step {
@@ -117,14 +123,16 @@ pub(super) fn steps(
             }
             return Ok(Ended::Stopped(stop));
         }
-        (books.course.pace).add(now - begun, particles, sim.time_step());
+        (books.course.pace).add(now - begun - writing, particles, sim.time_step());
         books.recorder.record(sim)?;
         if sim.stage() != stage {
             books.stage_begins(sim)?;
         }
-        if sim.stage() != stage || books.checkpoints.due(now) {
+        let due = sim.stage() != stage || books.checkpoints.due(now);
+        if due && !sim.finished() {
             books.checkpoint(sim)?;
         }
+        sim.wrote_output();
         if now - shown >= PROGRESS_INTERVAL {
             shown = now;
             observer.progress(&Progress {

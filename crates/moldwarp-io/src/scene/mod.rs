@@ -53,6 +53,7 @@ use moldwarp::{Mesh, Particles, Plan};
 use presence::Presence;
 use raw::RawScene;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// A scene, read and checked.
 #[derive(Debug)]
@@ -77,6 +78,8 @@ pub struct Scene {
     pub earlier: Option<Earlier>,
     /// How far ahead of a moving mesh [`check`](crate::check::check) looks, m, if it is said.
     pub travel: Option<f64>,
+    /// Wall time that reading took, mesh included.
+    pub reading: Duration,
     /// For messages that come up later.
     pub(crate) origin: Origin,
 }
@@ -137,6 +140,7 @@ fn read(
     text: &str,
     overrides: Vec<overrides::Override>,
 ) -> Result<Scene, SceneError> {
+    let start = Instant::now();
     let folder = match file.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),
@@ -146,6 +150,7 @@ fn read(
         Ok(mut scene) => {
             scene.origin.name = name;
             scene.origin.overrides = overrides;
+            scene.reading = start.elapsed();
             Ok(scene)
         }
         Err(fault) => Err(overrides::blame(fault, text, &overrides).in_file(&name, text)),
@@ -269,6 +274,7 @@ fn check(
         });
     let surfaces = surfaces.collect();
     Ok(Scene {
+        reading: Duration::ZERO,
         plan: Plan {
             title: raw.title.clone().unwrap_or_else(|| case.clone()),
             gravity,

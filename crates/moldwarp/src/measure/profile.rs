@@ -19,12 +19,13 @@ pub enum Part {
     Nodes,
     Receive,
     ToParticles,
+    Output,
     Between,
 }
 
 impl Part {
     /// All parts in the order in which a step goes through them, as people call them.
-    pub const ALL: [(Part, &'static str); 14] = [
+    pub const ALL: [(Part, &'static str); 15] = [
         (Part::Remap, "4 remap"),
         (Part::Strain, "5 strain"),
         (Part::Stress, "6 stress"),
@@ -38,7 +39,8 @@ impl Part {
         (Part::Nodes, "2 nodes, contact"),
         (Part::Receive, "2 correction of the mass"),
         (Part::ToParticles, "3 nodes to particles"),
-        (Part::Between, "between steps: output, stages"),
+        (Part::Output, "output: frames, checkpoints …"),
+        (Part::Between, "between steps"),
     ];
 }
 

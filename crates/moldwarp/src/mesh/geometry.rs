@@ -24,6 +24,16 @@ pub fn barycentric(origin: Vec3, gradients: &[Vec3; 3], x: Vec3) -> [f64; 4] {
     [1.0 - b - c - e, b, c, e]
 }
 
+/// Shortest altitude, m, of a tetrahedron with these gradients of N₁, N₂, N₃, 1/m: a gradient is 1 over an
+/// altitude.
+pub fn shortest_altitude(gradients: &[Vec3; 3]) -> f64 {
+    let first = -(gradients[0] + gradients[1] + gradients[2]);
+    let steepest = gradients
+        .iter()
+        .fold(first.length_squared(), |m, g| m.max(g.length_squared()));
+    1.0 / steepest.sqrt()
+}
+
 impl Mesh {
     /// Barycentric coordinates of `x` in element `e`; they are the shape functions there.
     #[inline]
@@ -55,22 +65,21 @@ impl Mesh {
         self.corners(e).iter().sum::<Vec3>() / 4.0
     }
 
-    /// Computes volumes and altitudes from the node coordinates, and the volumes
+    /// Shortest altitude of element `e`, m.
+    pub fn altitude(&self, e: usize) -> f64 {
+        shortest_altitude(&self.gradients(e))
+    }
+
+    /// Computes volumes from the node coordinates, and the volumes
     /// attached to nodes. To be called whenever nodes have moved.
     pub fn update_geometry(&mut self) {
         let (nodes, tets) = (&self.nodes, &self.tets);
-        (&mut self.volumes, &mut self.altitudes)
+        (&mut self.volumes)
             .into_par_iter()
             .zip(tets)
             .with_min_len(1024)
-            .for_each(|((volume, altitude), tet)| {
-                let gradients;
-                (gradients, *volume) = tetrahedron_gradients(tet.map(|n| nodes[n as usize]));
-                let first = -(gradients[0] + gradients[1] + gradients[2]);
-                let steepest = gradients
-                    .iter()
-                    .fold(first.length_squared(), |m, g| m.max(g.length_squared()));
-                *altitude = 1.0 / steepest.sqrt();
+            .for_each(|(volume, tet)| {
+                *volume = tetrahedron_gradients(tet.map(|n| nodes[n as usize])).1;
             });
         let (volumes, offsets, attached) = (&self.volumes, &self.node_offsets, &self.node_elements);
         self.node_volumes

@@ -17,10 +17,11 @@ mod walls;
 
 pub use cylinder::{CylinderError, CylinderSector, Split};
 pub use generate::box_mesh;
-pub use geometry::{barycentric, tetrahedron_gradients};
+pub use geometry::{barycentric, shortest_altitude, tetrahedron_gradients};
 pub use motion::{Driven, Follower, MotionError, Visit, Zones};
 pub use quality::Quality;
 pub use revolve::{PlaneMesh, Revolved};
+pub use saved::MeshAt;
 pub use walls::Walls;
 
 use crate::Vec3;
@@ -99,8 +100,6 @@ pub struct Mesh {
     pub tets: Vec<[u32; 4]>,
     /// Element volumes, m³.
     pub volumes: Vec<f64>,
-    /// Shortest altitude of each element, m.
-    pub altitudes: Vec<f64>,
     /// The element across each local face, or [`NONE`].
     pub neighbours: Vec<[u32; 4]>,
     /// Volume of all elements attached to each node, m³.

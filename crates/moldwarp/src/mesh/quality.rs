@@ -39,10 +39,11 @@ impl Mesh {
                     edges += edge;
                 }
             }
-            if self.altitudes[e] < q.smallest_altitude {
-                (q.smallest_altitude, q.smallest_altitude_element) = (self.altitudes[e], e as u32);
+            let altitude = self.altitude(e);
+            if altitude < q.smallest_altitude {
+                (q.smallest_altitude, q.smallest_altitude_element) = (altitude, e as u32);
             }
-            let aspect = longest / self.altitudes[e];
+            let aspect = longest / altitude;
             if aspect > q.worst_aspect {
                 (q.worst_aspect, q.worst_aspect_element) = (aspect, e as u32);
             }

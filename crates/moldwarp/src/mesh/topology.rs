@@ -6,9 +6,7 @@ use super::{
 };
 use crate::Vec3;
 use rayon::prelude::*;
-
-/// A face by its sorted nodes, with the element and local face it belongs to.
-type FaceKey = ([u32; 3], u32, u8);
+use std::sync::atomic::{AtomicU32, Ordering};
 
 impl Mesh {
     /// Connects elements to a mesh.
@@ -25,14 +23,17 @@ impl Mesh {
         check_numbers(&nodes, &tets)?;
         orient(&nodes, &mut tets)?;
         let (node_offsets, node_elements) = node_to_elements(nodes.len(), &tets);
-        let faces = sorted_faces(&tets);
-        let neighbours = neighbours(tets.len(), &faces)?;
+        let faces = Faces {
+            tets: &tets,
+            offsets: &node_offsets,
+            attached: &node_elements,
+        };
+        let neighbours = faces.neighbours()?;
         let surfaces = surfaces(surface_groups, &faces)?;
         let volume_groups = volumes(volume_groups, tets.len())?;
         let count = tets.len();
         let mut mesh = Mesh {
             volumes: vec![0.0; count],
-            altitudes: vec![0.0; count],
             node_volumes: vec![0.0; nodes.len()],
             nodes,
             tets,
@@ -119,58 +120,141 @@ fn node_to_elements(nodes: usize, tets: &[[u32; 4]]) -> (Vec<u32>, Vec<Corner>) 
     (offsets, attached)
 }
 
-fn sorted_faces(tets: &[[u32; 4]]) -> Vec<FaceKey> {
-    let mut faces: Vec<FaceKey> = tets
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|(e, tet)| {
-            FACE_NODES.iter().enumerate().map(move |(local, corners)| {
-                let mut key = corners.map(|i| tet[i]);
-                key.sort_unstable();
-                (key, e as u32, local as u8)
-            })
-        })
-        .collect();
-    faces.par_sort_unstable();
-    faces
+/// Faces are found among the elements at one of their nodes, about two dozen: no list of all faces is
+/// needed, which would be larger than the mesh.
+struct Faces<'a> {
+    tets: &'a [[u32; 4]],
+    offsets: &'a [u32],
+    attached: &'a [Corner],
 }
 
-fn neighbours(elements: usize, faces: &[FaceKey]) -> Result<Vec<[u32; 4]>, MeshError> {
-    let mut neighbours = vec![[NONE; 4]; elements];
-    for same in faces.chunk_by(|a, b| a.0 == b.0) {
-        match same {
-            [_] => {}
-            [a, b] => {
-                neighbours[a.1 as usize][a.2 as usize] = b.1;
-                neighbours[b.1 as usize][b.2 as usize] = a.1;
-            }
-            more => {
-                let elements = more.iter().map(|f| f.1).collect();
-                return Err(MeshError::FaceShared {
-                    nodes: more[0].0,
-                    elements,
-                });
+impl Faces<'_> {
+    /// The sides of elements with these three nodes, by element.
+    fn sides(&self, nodes: [u32; 3]) -> impl Iterator<Item = Face> + '_ {
+        let at = |n: u32| {
+            let ends = (
+                self.offsets.get(n as usize),
+                self.offsets.get(n as usize + 1),
+            );
+            let (Some(&from), Some(&to)) = ends else {
+                return &[][..];
+            };
+            &self.attached[from as usize..to as usize]
+        };
+        let fewest = nodes
+            .map(at)
+            .into_iter()
+            .min_by_key(|corners| corners.len());
+        let corners = fewest.unwrap_or_default().iter();
+        corners.filter_map(move |corner| {
+            let tet = &self.tets[corner.owner()];
+            // Three of four nodes: the one that is not among them lies opposite.
+            let mut opposite = (0..4).filter(|&i| !nodes.contains(&tet[i]));
+            let (local, more) = (opposite.next()?, opposite.next());
+            more.is_none().then_some(Face {
+                element: corner.owner() as u32,
+                local: local as u8,
+            })
+        })
+    }
+
+    /// The element across each side of each element.
+    ///
+    /// # Errors
+    ///
+    /// Of the faces with more than two sides, the one whose sorted nodes come first.
+    fn neighbours(&self) -> Result<Vec<[u32; 4]>, MeshError> {
+        // Each side is one of its least node, and so written by one thread.
+        let none = |_| [NONE; 4].map(AtomicU32::new);
+        let neighbours: Vec<[AtomicU32; 4]> = self.tets.par_iter().map(none).collect();
+        let connect = |side: &Side, to: &Side| {
+            let Face { element, local } = side.face();
+            let place = &neighbours[element as usize][usize::from(local)];
+            place.store(to.face().element, Ordering::Relaxed);
+        };
+        let nodes = (0..self.offsets.len() - 1).into_par_iter();
+        let shared = nodes
+            .with_min_len(1024)
+            .map_init(Vec::new, |sides, n| {
+                self.sides_of_least_node(n, sides);
+                for same in sides.chunk_by(|a, b| a.others == b.others) {
+                    match same {
+                        [] | [_] => {}
+                        [a, b] => {
+                            connect(a, b);
+                            connect(b, a);
+                        }
+                        [first, ..] => {
+                            let [b, c] = first.others;
+                            let elements = same.iter().map(|s| s.face().element).collect();
+                            let nodes = [n as u32, b, c];
+                            return Some(MeshError::FaceShared { nodes, elements });
+                        }
+                    }
+                }
+                None
+            })
+            .find_map_first(|error| error);
+        match shared {
+            Some(error) => Err(error),
+            None => {
+                let neighbours = neighbours.into_iter();
+                Ok(neighbours.map(|of| of.map(AtomicU32::into_inner)).collect())
             }
         }
     }
-    Ok(neighbours)
+
+    /// All sides of elements whose least node is `n`, in order.
+    fn sides_of_least_node(&self, n: usize, sides: &mut Vec<Side>) {
+        sides.clear();
+        for corner in &self.attached[self.offsets[n] as usize..self.offsets[n + 1] as usize] {
+            let tet = &self.tets[corner.owner()];
+            for opposite in (0..4).filter(|&i| i != corner.local()) {
+                let mut others = FACE_NODES[opposite]
+                    .into_iter()
+                    .filter(|&i| i != corner.local());
+                let [Some(i), Some(j)] = [others.next(), others.next()] else {
+                    unreachable!("a face has three nodes");
+                };
+                let (low, high) = (tet[i].min(tet[j]), tet[i].max(tet[j]));
+                if low > n as u32 {
+                    sides.push(Side {
+                        others: [low, high],
+                        corner: Corner::new(corner.owner(), opposite),
+                    });
+                }
+            }
+        }
+        sides.sort_unstable_by_key(|side| (side.others, side.corner.owner()));
+    }
+}
+
+/// A face of an element by the two greater ones of its nodes.
+struct Side {
+    others: [u32; 2],
+    /// The corner opposite it.
+    corner: Corner,
+}
+
+impl Side {
+    fn face(&self) -> Face {
+        Face {
+            element: self.corner.owner() as u32,
+            local: self.corner.local() as u8,
+        }
+    }
 }
 
 fn surfaces(
     groups: Vec<(String, Vec<[u32; 3]>)>,
-    faces: &[FaceKey],
+    faces: &Faces,
 ) -> Result<Vec<Surface>, MeshError> {
     let find = |surface: &str, nodes: [u32; 3]| {
-        let mut key = nodes;
-        key.sort_unstable();
-        let at = faces.partition_point(|f| f.0 < key);
-        match faces.get(at) {
-            Some(&(found, element, local)) if found == key => Ok(Face { element, local }),
-            _ => Err(MeshError::NoSuchFace {
-                surface: surface.to_owned(),
-                nodes,
-            }),
-        }
+        let face = faces.sides(nodes).next();
+        face.ok_or_else(|| MeshError::NoSuchFace {
+            surface: surface.to_owned(),
+            nodes,
+        })
     };
     groups
         .into_iter()

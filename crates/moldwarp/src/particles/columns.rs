@@ -3,7 +3,7 @@
 use super::State;
 use crate::Vec3;
 use crate::material::STATE_SIZE;
-use crate::saved::{Broken, Bytes, Saved};
+use crate::saved::{Broken, Bytes, Out, Saved};
 use crate::tensor::Voigt;
 use std::marker::PhantomData;
 
@@ -93,7 +93,11 @@ impl<T: From<[f64; N]> + Into<[f64; N]>, const N: usize> FromIterator<T> for Col
 }
 
 impl<T, const N: usize> Saved for Columns<T, N> {
-    fn save(&self, out: &mut Vec<u8>) {
+    fn size(&self) -> usize {
+        self.columns.size()
+    }
+
+    fn save(&self, out: &mut Out) {
         self.columns.save(out);
     }
 

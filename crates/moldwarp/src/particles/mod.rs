@@ -43,6 +43,19 @@ pub struct Particles {
 }
 
 impl Particles {
+    /// None, with room for so many.
+    pub(crate) fn with_capacity(count: usize) -> Particles {
+        let mut particles = Particles {
+            id: Vec::with_capacity(count),
+            body: Vec::with_capacity(count),
+            element: Vec::with_capacity(count),
+            ..Particles::default()
+        };
+        let columns = particles.columns_mut();
+        columns.for_each(|column| column.reserve_exact(count));
+        particles
+    }
+
     pub fn len(&self) -> usize {
         self.id.len()
     }

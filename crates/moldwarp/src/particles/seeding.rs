@@ -147,13 +147,13 @@ pub fn seeds(
 
 /// Particles at rest and free of stress at seeds, in their order.
 pub fn particles(
-    seeds: &[Seed],
+    seeds: impl Iterator<Item = Seed> + Clone,
     mesh: &Mesh,
     bodies: &[Body],
     materials: &[NamedMaterial],
 ) -> Particles {
     let patterns: Vec<_> = (0..=MOST).map(pattern).collect();
-    let mut particles = Particles::default();
+    let mut particles = Particles::with_capacity(seeds.clone().count());
     for seed in seeds {
         let (body, rule) = (usize::from(seed.body), &patterns[usize::from(seed.along)]);
         let element = seed.element as usize;
@@ -229,10 +229,10 @@ pub fn check_overlap(
         let range = end..end + same.len();
         end = range.end;
         let body = &particles.body[range.clone()];
-        let position: Vec<Vec3> = range.clone().map(|p| particles.position.at(p)).collect();
         let Some(other) = body.iter().find(|&&b| b != body[0]) else {
             continue;
         };
+        let position: Vec<Vec3> = range.clone().map(|p| particles.position.at(p)).collect();
         let volume: f64 = particles.volume[range].iter().sum();
         let twice = |i: usize| position[..i].contains(&position[i]);
         if volume > mesh.volumes[same[0] as usize] * (1.0 + 1e-9) || (0..same.len()).any(twice) {

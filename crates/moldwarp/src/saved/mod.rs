@@ -4,16 +4,29 @@
 //! array of numbers is just that; a structure is its fields in order. What is not written is
 //! either made anew from what is (the numbering of cells and nodes, the mesh's geometry), or is
 //! written by every step before it is read. Structures are taken apart and put together by name of
-//! every field, so that none can be forgotten here.
+//! every field, so that none can be forgotten here. Bytes are handed on in pieces as they are made:
+//! a large state is never in memory twice.
 
+mod out;
 mod simulation;
 mod types;
 mod values;
 
+pub use out::{Out, Part, Section, to_bytes};
+pub(crate) use values::{list_size, save_list};
+
 /// Something that can be written as bytes and read back, equal bit for bit.
 pub trait Saved: Sized {
-    /// Appends it.
-    fn save(&self, out: &mut Vec<u8>);
+    /// Number of bytes that [`Saved::save`] will write.
+    fn size(&self) -> usize;
+
+    /// Writes it.
+    fn save(&self, out: &mut Out);
+
+    /// Writes several one after the other; numbers have a faster way.
+    fn save_all(items: &[Self], out: &mut Out) {
+        items.iter().for_each(|item| item.save(out));
+    }
 
     /// Takes it from the front.
     ///
@@ -82,7 +95,13 @@ pub fn load<T: Saved>(bytes: &[u8]) -> Result<T, Broken> {
 macro_rules! saved {
     ($name:ident { $($field:ident),* $(,)? }) => {
         impl $crate::saved::Saved for $name {
-            fn save(&self, out: &mut Vec<u8>) {
+            #[inline]
+            fn size(&self) -> usize {
+                let $name { $($field),* } = self;
+                0 $(+ $crate::saved::Saved::size($field))*
+            }
+
+            fn save(&self, out: &mut $crate::saved::Out) {
                 let $name { $($field),* } = self;
                 $($crate::saved::Saved::save($field, out);)*
             }
@@ -100,10 +119,19 @@ macro_rules! saved {
 macro_rules! saved_enum {
     ($name:ident { $($number:literal => $variant:ident $( { $($field:ident),* } )? $( ( $($item:ident),* ) )?),* $(,)? }) => {
         impl $crate::saved::Saved for $name {
-            fn save(&self, out: &mut Vec<u8>) {
+            fn size(&self) -> usize {
                 match self {
                     $($name::$variant $( { $($field),* } )? $( ( $($item),* ) )? => {
-                        out.push($number);
+                        1 $($(+ $crate::saved::Saved::size($field))*)?
+                            $($(+ $crate::saved::Saved::size($item))*)?
+                    })*
+                }
+            }
+
+            fn save(&self, out: &mut $crate::saved::Out) {
+                match self {
+                    $($name::$variant $( { $($field),* } )? $( ( $($item),* ) )? => {
+                        out.put(&[$number]);
                         $($($crate::saved::Saved::save($field, out);)*)?
                         $($($crate::saved::Saved::save($item, out);)*)?
                     })*

@@ -1,6 +1,6 @@
 //! The whole state, section by section.
 
-use super::{Broken, Saved, load};
+use super::{Broken, Saved, Section, load};
 use crate::Vec3;
 use crate::boundary::LoadPoint;
 use crate::contact::Contacts;
@@ -21,7 +21,7 @@ impl Simulation {
     /// Those of `section`, the first of which is the last call.
     pub fn save<E>(
         &self,
-        mut section: impl FnMut(&'static str, &[u8]) -> Result<(), E>,
+        mut section: impl FnMut(&'static str, Section) -> Result<(), E>,
     ) -> Result<(), E> {
         let Simulation {
             plan,
@@ -63,39 +63,33 @@ impl Simulation {
             spare_numbers: _,
         } = self;
         let materials: Vec<usize> = plan.bodies.iter().map(|b| b.material).collect();
-        let mut bytes = Vec::new();
-        let mut save = |name, values: &dyn Fn(&mut Vec<u8>)| {
-            bytes.clear();
-            values(&mut bytes);
-            section(name, &bytes)
-        };
-        save("clock", &|out| clock.save(out))?;
-        save("particles", &|out| particles.save(out))?;
         let (homes, filed): (Vec<u32>, Vec<u32>) = guests.filed(&order.filed).unzip();
-        save("guests", &|out| (homes.save(out), filed.save(out)).1)?;
-        save("mesh nodes", &|out| plan.mesh.nodes.save(out))?;
-        save("materials", &|out| materials.save(out))?;
-        save("reserve", &|out| reserve.save(out))?;
-        save("walls", &|out| walls.save(out))?;
-        save("fields", &|out| fields.save(out))?;
-        save("contacts", &|out| contacts.save(out))?;
-        save("nodes", &|out| nodes.save(out))?;
-        save("cells", &|out| cells.save(out))?;
-        save("constraints", &|out| constraints.save(out))?;
-        save("absorbing", &|out| absorbing.save(out))?;
-        save("outflow", &|out| outflow.save(out))?;
-        save("outflown", &|out| outflown.save(out))?;
-        save("present", &|out| present.save(out))?;
-        save("follower", &|out| follower.save(out))?;
-        save("driven", &|out| driven.save(out))?;
-        save("loads", &|out| loads.save(out))?;
-        save("reference", &|out| reference.save(out))?;
-        save("ledger", &|out| ledger.save(out))?;
-        save("probes", &|out| probes.save(out))?;
-        save("gravity", &|out| gravity.save(out))?;
-        save("switches", &|out| switches.save(out))?;
-        save("watch", &|out| watch.save(out))?;
-        save("scale", &|out| scale.save(out))
+        section("clock", Section::new(clock))?;
+        section("particles", Section::new(particles))?;
+        section("guests", Section::new(&[homes, filed]))?;
+        section("mesh nodes", Section::new(&plan.mesh.nodes))?;
+        section("materials", Section::new(&materials))?;
+        section("reserve", Section::new(reserve))?;
+        section("walls", Section::new(walls))?;
+        section("fields", Section::new(fields))?;
+        section("contacts", Section::new(contacts))?;
+        section("nodes", Section::new(nodes))?;
+        section("cells", Section::new(cells))?;
+        section("constraints", Section::new(constraints))?;
+        section("absorbing", Section::new(absorbing))?;
+        section("outflow", Section::new(outflow))?;
+        section("outflown", Section::new(outflown))?;
+        section("present", Section::new(present))?;
+        section("follower", Section::new(follower))?;
+        section("driven", Section::new(driven))?;
+        section("loads", Section::new(loads))?;
+        section("reference", Section::new(reference))?;
+        section("ledger", Section::new(ledger))?;
+        section("probes", Section::new(probes))?;
+        section("gravity", Section::new(gravity))?;
+        section("switches", Section::new(switches))?;
+        section("watch", Section::new(watch))?;
+        section("scale", Section::new(scale))
     }
 
     /// The simulation that was saved. `plan` is that with which it was set up, but for the ends of

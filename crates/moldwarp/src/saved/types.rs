@@ -62,7 +62,11 @@ saved!(CellForce {
 });
 
 impl crate::saved::Saved for Lane {
-    fn save(&self, out: &mut Vec<u8>) {
+    fn size(&self) -> usize {
+        (**self).size()
+    }
+
+    fn save(&self, out: &mut crate::saved::Out) {
         (**self).save(out);
     }
 
@@ -73,7 +77,11 @@ impl crate::saved::Saved for Lane {
 
 /// The sums and stresses of the last kick; all else is written by each step before it is read.
 impl crate::saved::Saved for Cells {
-    fn save(&self, out: &mut Vec<u8>) {
+    fn size(&self) -> usize {
+        self.sums.size() + self.pairs.size() + self.stresses.size() + self.forces.size()
+    }
+
+    fn save(&self, out: &mut crate::saved::Out) {
         let Cells {
             // Those of the mesh.
             shapes: _,

@@ -1,14 +1,23 @@
 //! Numbers, vectors, lists and texts.
 
-use super::{Broken, Bytes, Saved};
+use super::{Broken, Bytes, Out, Saved};
 use crate::{Mat3, Vec3};
 
 macro_rules! numbers {
     ($($number:ty),*) => {$(
         impl Saved for $number {
             #[inline]
-            fn save(&self, out: &mut Vec<u8>) {
-                out.extend_from_slice(&self.to_le_bytes());
+            fn size(&self) -> usize {
+                size_of::<$number>()
+            }
+
+            #[inline]
+            fn save(&self, out: &mut Out) {
+                out.put(&self.to_le_bytes());
+            }
+
+            fn save_all(items: &[$number], out: &mut Out) {
+                out.put_all(items, <$number>::to_le_bytes);
             }
 
             #[inline]
@@ -24,7 +33,11 @@ macro_rules! numbers {
 numbers!(u8, u16, u32, u64, f64);
 
 impl Saved for usize {
-    fn save(&self, out: &mut Vec<u8>) {
+    fn size(&self) -> usize {
+        size_of::<u64>()
+    }
+
+    fn save(&self, out: &mut Out) {
         (*self as u64).save(out);
     }
 
@@ -35,8 +48,12 @@ impl Saved for usize {
 }
 
 impl Saved for bool {
-    fn save(&self, out: &mut Vec<u8>) {
-        out.push(u8::from(*self));
+    fn size(&self) -> usize {
+        1
+    }
+
+    fn save(&self, out: &mut Out) {
+        out.put(&[u8::from(*self)]);
     }
 
     fn load(from: &mut Bytes) -> Result<bool, Broken> {
@@ -50,8 +67,13 @@ impl Saved for bool {
 
 impl Saved for Vec3 {
     #[inline]
-    fn save(&self, out: &mut Vec<u8>) {
-        self.to_array().save(out);
+    fn size(&self) -> usize {
+        size_of::<[f64; 3]>()
+    }
+
+    #[inline]
+    fn save(&self, out: &mut Out) {
+        out.put(self.to_array().map(f64::to_le_bytes).as_flattened());
     }
 
     #[inline]
@@ -61,7 +83,11 @@ impl Saved for Vec3 {
 }
 
 impl Saved for Mat3 {
-    fn save(&self, out: &mut Vec<u8>) {
+    fn size(&self) -> usize {
+        size_of::<[f64; 9]>()
+    }
+
+    fn save(&self, out: &mut Out) {
         self.to_cols_array().save(out);
     }
 
@@ -72,8 +98,17 @@ impl Saved for Mat3 {
 
 impl<T: Saved, const N: usize> Saved for [T; N] {
     #[inline]
-    fn save(&self, out: &mut Vec<u8>) {
-        self.iter().for_each(|item| item.save(out));
+    fn size(&self) -> usize {
+        self.iter().map(T::size).sum()
+    }
+
+    #[inline]
+    fn save(&self, out: &mut Out) {
+        T::save_all(self, out);
+    }
+
+    fn save_all(items: &[[T; N]], out: &mut Out) {
+        T::save_all(items.as_flattened(), out);
     }
 
     #[inline]
@@ -86,10 +121,24 @@ impl<T: Saved, const N: usize> Saved for [T; N] {
     }
 }
 
+/// Number of bytes of a list.
+pub(crate) fn list_size<T: Saved>(items: &[T]) -> usize {
+    items.len().size() + items.iter().map(T::size).sum::<usize>()
+}
+
+/// Its length and its items.
+pub(crate) fn save_list<T: Saved>(items: &[T], out: &mut Out) {
+    items.len().save(out);
+    T::save_all(items, out);
+}
+
 impl<T: Saved> Saved for Vec<T> {
-    fn save(&self, out: &mut Vec<u8>) {
-        self.len().save(out);
-        self.iter().for_each(|item| item.save(out));
+    fn size(&self) -> usize {
+        list_size(self)
+    }
+
+    fn save(&self, out: &mut Out) {
+        save_list(self, out);
     }
 
     fn load(from: &mut Bytes) -> Result<Vec<T>, Broken> {
@@ -104,7 +153,11 @@ impl<T: Saved> Saved for Vec<T> {
 }
 
 impl<T: Saved> Saved for Option<T> {
-    fn save(&self, out: &mut Vec<u8>) {
+    fn size(&self) -> usize {
+        1 + self.as_ref().map_or(0, T::size)
+    }
+
+    fn save(&self, out: &mut Out) {
         self.is_some().save(out);
         self.iter().for_each(|item| item.save(out));
     }
@@ -115,7 +168,12 @@ impl<T: Saved> Saved for Option<T> {
 }
 
 impl<A: Saved, B: Saved> Saved for (A, B) {
-    fn save(&self, out: &mut Vec<u8>) {
+    #[inline]
+    fn size(&self) -> usize {
+        self.0.size() + self.1.size()
+    }
+
+    fn save(&self, out: &mut Out) {
         self.0.save(out);
         self.1.save(out);
     }
@@ -126,9 +184,13 @@ impl<A: Saved, B: Saved> Saved for (A, B) {
 }
 
 impl Saved for String {
-    fn save(&self, out: &mut Vec<u8>) {
+    fn size(&self) -> usize {
+        self.len().size() + self.len()
+    }
+
+    fn save(&self, out: &mut Out) {
         self.len().save(out);
-        out.extend_from_slice(self.as_bytes());
+        out.put(self.as_bytes());
     }
 
     fn load(from: &mut Bytes) -> Result<String, Broken> {
@@ -140,8 +202,7 @@ impl Saved for String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::load;
-    use super::*;
+    use super::super::{load, to_bytes};
 
     #[test]
     fn values_come_back_bit_for_bit() {
@@ -151,8 +212,7 @@ mod tests {
             (None, String::new()),
             (Some(odd), "b".to_owned()),
         ];
-        let mut bytes = Vec::new();
-        list.save(&mut bytes);
+        let mut bytes = to_bytes(&list);
         let back: Vec<(Option<f64>, String)> = load(&bytes).unwrap();
         for ((a, name), (b, other)) in list.iter().zip(&back) {
             assert_eq!(a.map(f64::to_bits), b.map(f64::to_bits));

@@ -343,7 +343,7 @@ fn touching_gap(sim: &Simulation, meeting: &Meeting) -> f64 {
     let elements = cells.into_iter().flatten();
     let altitudes = elements.map(|a| {
         let e = sim.active.elements[a.owner()];
-        sim.plan.mesh.altitudes[e as usize]
+        sim.plan.mesh.altitude(e as usize)
     });
     TOUCHING * altitudes.fold(f64::INFINITY, f64::min)
 }

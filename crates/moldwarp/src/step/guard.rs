@@ -47,7 +47,7 @@ fn settle(sim: &Simulation, p: usize) -> Option<(u32, Vec3)> {
         if !contacts.blocks(field, before, found) {
             return Some((found, x));
         }
-        let size = mesh.altitudes[found as usize];
+        let size = mesh.altitude(found as usize);
         let (n, depth) = contacts.passed(mesh, field, before, found, x)?;
         x += n * (depth + CLEAR * size);
         if (x - start).length() > FARTHEST * size {

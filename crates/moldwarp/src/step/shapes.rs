@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, get, set};
-use crate::mesh::{Mesh, NONE, barycentric};
+use crate::mesh::{Mesh, NONE, barycentric, shortest_altitude};
 
 /// Vectors at the four nodes of cells side by side.
 pub type Corners = [Lane; 12];
@@ -46,12 +46,13 @@ impl Shapes {
             let e = e as usize;
             let origin = mesh.nodes[mesh.tets[e][0] as usize];
             set(&mut self.origin, l, origin.to_array());
-            for (i, g) in mesh.gradients(e).iter().enumerate() {
+            let gradients = mesh.gradients(e);
+            for (i, g) in gradients.iter().enumerate() {
                 for (k, g) in g.to_array().into_iter().enumerate() {
                     self.gradients[3 * i + k][l] = g;
                 }
             }
-            (self.volume[l], self.altitude[l]) = (mesh.volumes[e], mesh.altitudes[e]);
+            (self.volume[l], self.altitude[l]) = (mesh.volumes[e], shortest_altitude(&gradients));
         }
     }
 

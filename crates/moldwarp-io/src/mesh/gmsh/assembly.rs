@@ -4,14 +4,13 @@ use super::super::{GmshProblem, MeshFile};
 use super::Result;
 use super::cursor::Cursor;
 use moldwarp::Vec3;
-use moldwarp::mesh::RawMesh;
-use std::collections::hash_map::Entry;
+use moldwarp::mesh::{NONE, RawMesh};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// What has been read so far. Nodes and elements are numbered from 0 in the file's order.
 #[derive(Default)]
 pub(super) struct Assembly {
-    numbers: HashMap<u64, u32>,
+    numbers: Numbers,
     pub(super) node_tags: Vec<u64>,
     pub(super) nodes: Vec<Vec3>,
     pub(super) tets: Vec<[u32; 4]>,
@@ -30,6 +29,45 @@ pub(super) struct Assembly {
 pub(super) struct Triangles {
     pub(super) list: Vec<[u32; 3]>,
     sorted: HashSet<[u32; 3]>,
+}
+
+/// The numbers of nodes by their tags. Tags may have gaps and be anything, but nearly always they are about as
+/// large as there are nodes: then they are places in a list.
+#[derive(Default)]
+struct Numbers {
+    /// [`NONE`] where there is no node.
+    list: Vec<u32>,
+    /// Of tags beyond the list.
+    others: HashMap<u64, u32>,
+}
+
+impl Numbers {
+    /// Makes room for so many before the first comes.
+    fn reserve(&mut self, nodes: usize) {
+        if self.list.is_empty() && self.others.is_empty() {
+            self.list.resize(2 * nodes + 1, NONE);
+        }
+    }
+
+    fn place(tag: u64) -> usize {
+        usize::try_from(tag).unwrap_or(usize::MAX)
+    }
+
+    /// Whether the tag is a new one.
+    fn insert(&mut self, tag: u64, number: u32) -> bool {
+        match self.list.get_mut(Numbers::place(tag)) {
+            Some(place) => std::mem::replace(place, number) == NONE,
+            None => self.others.insert(tag, number).is_none(),
+        }
+    }
+
+    #[inline]
+    fn get(&self, tag: u64) -> Option<u32> {
+        match self.list.get(Numbers::place(tag)) {
+            Some(&number) => (number != NONE).then_some(number),
+            None => self.others.get(&tag).copied(),
+        }
+    }
 }
 
 impl Assembly {
@@ -53,14 +91,11 @@ impl Assembly {
     pub(super) fn add_node(&mut self, cursor: &Cursor, tag: u64) -> Result<()> {
         // A file with more nodes than 32 bits count would be over 100 GB.
         let number = self.node_tags.len() as u32;
-        match self.numbers.entry(tag) {
-            Entry::Occupied(_) => Err(cursor.wrong(GmshProblem::TwoNodes(tag))),
-            Entry::Vacant(entry) => {
-                entry.insert(number);
-                self.node_tags.push(tag);
-                Ok(())
-            }
+        if !self.numbers.insert(tag, number) {
+            return Err(cursor.wrong(GmshProblem::TwoNodes(tag)));
         }
+        self.node_tags.push(tag);
+        Ok(())
     }
 
     pub(super) fn add_coordinates(&mut self, x: Vec3) {
@@ -70,8 +105,8 @@ impl Assembly {
     /// The number of the node whose tag was read last.
     #[inline]
     pub(super) fn node_number(&self, cursor: &Cursor, node: u64, element: u64) -> Result<u32> {
-        match self.numbers.get(&node) {
-            Some(&number) => Ok(number),
+        match self.numbers.get(node) {
+            Some(number) => Ok(number),
             None => Err(cursor.wrong(GmshProblem::NoSuchNode { element, node })),
         }
     }
@@ -223,6 +258,9 @@ impl Assembly {
     }
 
     fn check_same_tags(&self) -> std::result::Result<(), GmshProblem> {
+        if self.element_tags.is_sorted_by(|a, b| a < b) {
+            return Ok(());
+        }
         let mut sorted = self.element_tags.clone();
         sorted.sort_unstable();
         match sorted.windows(2).find(|pair| pair[0] == pair[1]) {

@@ -17,6 +17,7 @@
 use super::{FREE_COSINE, harmonic};
 use crate::mesh::Mesh;
 use crate::{Mat3, Vec3};
+use rayon::prelude::*;
 
 /// κ, how much stiffer the mesh is along the motion.
 const STIFFER: f64 = 10.0;
@@ -137,7 +138,7 @@ impl Driven {
             own,
             direction,
             zone,
-            altitudes: mesh.altitudes.clone(),
+            altitudes: (0..mesh.tets.len()).map(|e| mesh.altitude(e)).collect(),
         })
     }
 
@@ -172,8 +173,8 @@ impl Driven {
 
     /// The first element that has become degenerate, if any has.
     pub fn degenerate(&self, mesh: &Mesh) -> Option<u32> {
-        let mut pairs = mesh.altitudes.iter().zip(&self.altitudes);
-        let found = pairs.position(|(now, before)| *now < LEAST_ALTITUDE * before);
+        let before = self.altitudes.par_iter().enumerate().with_min_len(1024);
+        let found = before.position_first(|(e, before)| mesh.altitude(e) < LEAST_ALTITUDE * before);
         found.map(|e| e as u32)
     }
 }

@@ -53,6 +53,7 @@ const BENCHES: [Bench; 13] = [
         sets: &[
             "mesh.box.cells=[40, 10, 20]",
             "numerics.time_step=1.1564e-4",
+            "stages.0.steps=800",
         ],
         warm_up: 0,
         steps: 800,
@@ -161,12 +162,16 @@ fn run(bench: &Bench) -> Result<(), Failure> {
     }
     let (mut done, start) = (0, Instant::now());
     for _ in 0..bench.steps {
+        if sim.finished() {
+            return Err(format!("{} is over after {} steps", bench.name, sim.steps()).into());
+        }
         done += sim.particles().len();
         sim.step()?;
     }
     let rate = done as f64 / start.elapsed().as_secs_f64();
     let peak = moldwarp_io::check::peak_memory().map(|bytes| bytes as f64);
     let mut filled = sim.particles().element.clone();
+    filled.sort_unstable();
     filled.dedup();
     println!(
         "{:12} {:10}  {:8} of {:8} {:7}   {:>24.2}   {:>32}",

@@ -251,6 +251,9 @@ impl Simulation {
         self.guests.clear();
         self.active.rebuild(&grid, &mut self.order);
         self.order.settle(&mut self.particles);
+        if grid.margin {
+            self.guests.make_room(&mut self.particles);
+        }
         let destination = &self.order.destination;
         for point in &mut self.loads {
             point.particle = destination[point.particle as usize];

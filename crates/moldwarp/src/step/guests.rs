@@ -62,6 +62,21 @@ impl Guests {
         self.found.clear();
     }
 
+    /// Room for as many as there may be, so that no step allocates.
+    pub fn make_room(&mut self, particles: &mut Particles) {
+        let most = particles.len() / FEW;
+        self.homes.reserve(most);
+        self.found.reserve(particles.len().min(2 * most));
+        self.cells.reserve(most);
+        let Particles {
+            id, body, element, ..
+        } = particles;
+        id.reserve_exact(most);
+        body.reserve_exact(most);
+        element.reserve_exact(most);
+        (particles.columns_mut()).for_each(|column| column.reserve_exact(most));
+    }
+
     fn arrive(&mut self, particles: &mut Particles) {
         if self.homes.is_empty() {
             return;
@@ -96,12 +111,7 @@ impl Guests {
     }
 }
 
-/// Room for guests, so that no step allocates: a vector that grows on its own takes twice what it has.
 fn copy<T: Copy>(values: &mut Vec<T>, homes: &[u32]) {
-    let count = values.len();
-    if values.capacity() < count + homes.len() {
-        values.reserve_exact(count / FEW + 1);
-    }
     for &p in homes {
         values.push(values[p as usize]);
     }

@@ -196,6 +196,7 @@ mod tests {
         let angle = std::f64::consts::TAU / f64::from(steps);
         let turn = Mat3::from_axis_angle(Vec3::new(1.0, 2.0, 2.0) / 3.0, angle);
         for _ in 0..steps {
+            sim.guests_arrive();
             move_nodes(&mut sim, |x| turn * (x - centre) - (x - centre));
             strain::run(&mut sim);
             stress::run(&mut sim);

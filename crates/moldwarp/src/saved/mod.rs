@@ -10,6 +10,8 @@ mod simulation;
 mod types;
 mod values;
 
+pub use simulation::instant;
+
 /// Something that can be written as bytes and read back, equal bit for bit.
 pub trait Saved: Sized {
     /// Appends it.

@@ -101,9 +101,7 @@ fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn run(
-    &(file, _, bottom, _): &(&str, &str, Bottom, &str),
-) -> Result<(Run, Balance), Failure> {
+fn run(&(file, _, bottom, _): &(&str, &str, Bottom, &str)) -> Result<(Run, Balance), Failure> {
     let scene = scene::load(&folder().join(file), &[])?;
     let hash = scene_hash(&scene.plan);
     let mut points = Vec::new();

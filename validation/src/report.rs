@@ -112,7 +112,12 @@ impl Report {
         std::fs::write(folder.join(format!("{case}-checks.csv")), checks.csv())?;
         for (name, plot) in &self.plots {
             let look = look();
-            let svg = Plot { look, ..plot.clone() }.svg().map_err(std::io::Error::other)?;
+            let svg = Plot {
+                look,
+                ..plot.clone()
+            }
+            .svg()
+            .map_err(std::io::Error::other)?;
             std::fs::write(folder.join(format!("{name}.svg")), svg)?;
         }
         Ok(())

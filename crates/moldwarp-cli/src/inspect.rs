@@ -5,8 +5,8 @@ use crate::exit::Exit;
 use crate::text::{self, number, table};
 use crate::{Failure, say};
 use moldwarp_io::results::{
-    CheckpointInfo, FieldRange, Inspection, StageInfo, State, checkpoint, field_ranges,
-    inspect as look,
+    CheckpointInfo, ColumnRange, FieldRange, Inspection, StageInfo, State, checkpoint,
+    field_ranges, inspect as look,
 };
 use moldwarp_io::sweep::{Member, members};
 use serde::Serialize;
@@ -117,12 +117,12 @@ fn about(run: &Inspection) -> Vec<String> {
     let count = |key: &str| run.figure(key).map_or("?".to_owned(), |n| format!("{n}"));
     if run.summary.is_some() {
         lines.push(format!(
-            "{} particles in {} elements, {} kg; {} particle steps/s with {} threads, moldwarp {}",
+            "{} particles in {} elements, {} kg; {} particle steps/s with {}, moldwarp {}",
             count("particles"),
             count("elements"),
             number(run.figure("mass").unwrap_or(f64::NAN)),
             text::rate(run.figure("particle_steps_per_second").unwrap_or(f64::NAN)),
-            count("threads"),
+            text::threads(run.figure("threads").unwrap_or(1.0) as usize),
             run.text("version").unwrap_or("?")
         ));
         if let (Some(low), Some(high)) = (run.figure("min_dt"), run.figure("max_dt")) {
@@ -190,7 +190,8 @@ fn history(run: &Inspection) -> Vec<String> {
     }
     let mut rows =
         vec![["", "", "last", "least", "at t (s)", "greatest", "at t (s)"].map(str::to_owned)];
-    for c in &run.columns {
+    let zero = |c: &&ColumnRange| c.least == 0.0 && c.greatest == 0.0 && c.not_finite == 0;
+    for c in run.columns.iter().filter(|c| !zero(c)) {
         let unit = match c.not_finite {
             0 => c.unit.clone(),
             n => format!("{} ({n} not finite)", c.unit),
@@ -207,20 +208,34 @@ fn history(run: &Inspection) -> Vec<String> {
             greatest_at,
         ]);
     }
-    let lines = table(&rows, 2);
-    [vec![format!("{} rows", run.rows)], lines].concat()
+    let zeros: Vec<&str> = run
+        .columns
+        .iter()
+        .filter(zero)
+        .map(|c| c.name.as_str())
+        .collect();
+    let zeros = match zeros.is_empty() {
+        true => Vec::new(),
+        false => vec![format!("zero throughout: {}", zeros.join(", "))],
+    };
+    [vec![format!("{} rows", run.rows)], table(&rows, 2), zeros].concat()
 }
 
-/// The fields' ranges, with when they were reached where that may differ.
+/// The fields' ranges, with the place of the end that is farther from zero: of a compressive stress that is
+/// the least. With when it was reached where that may differ.
 fn field_lines(fields: &[FieldRange], with_time: bool) -> Vec<String> {
-    let mut rows = vec![["", "", "least", "greatest", "greatest at (m)"].map(str::to_owned)];
+    let mut rows = vec![["", "", "least", "greatest", "farthest from 0 at (m)"].map(str::to_owned)];
     for f in fields {
-        let at = f.greatest.position.map(number).join(", ");
+        let farthest = match f.least.value.abs() > f.greatest.value.abs() {
+            true => &f.least,
+            false => &f.greatest,
+        };
+        let at = farthest.position.map(number).join(", ");
         let time = match with_time {
-            true => format!(", t = {} s", number(f.greatest.time)),
+            true => format!(", t = {} s", number(farthest.time)),
             false => String::new(),
         };
-        let id = f.greatest.id.map(|id| format!(", particle {id}"));
+        let id = farthest.id.map(|id| format!(", particle {id}"));
         let bad = match f.not_finite {
             0 => String::new(),
             n => format!(", {n} values are not finite"),

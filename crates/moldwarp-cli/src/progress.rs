@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Parts of the bar.
 const PARTS: u64 = 1000;
 /// How far, and below it how: the second line is cut at the terminal's edge.
-const TEMPLATE: &str = "{bar:30.cyan/dim} {prefix}\n{wide_msg:.dim}";
+const TEMPLATE: &str = "{bar:20.cyan/dim} {prefix}\n{wide_msg:.dim}";
 /// Without a terminal: a line at each tenth of the run, but no more often than once a second,
 /// and at least once a minute.
 const LEAST_PAUSE: Duration = Duration::from_secs(1);
@@ -139,13 +139,12 @@ fn how(p: &Progress) -> String {
         r => format!("residual {} %", text::number(100.0 * r)),
     };
     format!(
-        "{stage}step {}, Δt = {} s, {} particle steps/s, kinetic energy {} J, {residual}, \
-         numerical {:.2} %",
+        "{stage}step {}, Δt = {} s, {} particle steps/s, {residual}, numerical {:.2} %, kinetic energy {} J",
         p.step,
         text::number(p.time_step),
         text::rate(p.rate),
-        text::number(p.kinetic),
-        100.0 * p.numerical
+        100.0 * p.numerical,
+        text::number(p.kinetic)
     )
 }
 
@@ -177,8 +176,8 @@ mod tests {
         assert_eq!(far(&progress(), left), "25 %, t = 0.5 of 2 s, 30.0 s left");
         assert_eq!(
             how(&progress()),
-            "step 120, Δt = 0.00125 s, 1.50 M particle steps/s, kinetic energy 0.25 J, books close, \
-             numerical 0.49 %"
+            "step 120, Δt = 0.00125 s, 1.50 M particle steps/s, books close, numerical 0.49 %, \
+             kinetic energy 0.25 J"
         );
         let staged = Progress {
             stages: 2,

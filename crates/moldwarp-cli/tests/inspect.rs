@@ -30,7 +30,10 @@ fn a_run_that_is_done() {
     ] {
         assert!(said.contains(part), "{part:?} in\n{said}");
     }
-    assert!(!said.contains('\x1b') && !said.contains("checkpoints"), "{said}");
+    assert!(
+        !said.contains('\x1b') && !said.contains("checkpoints"),
+        "{said}"
+    );
 
     // The figures are those of the files.
     let run = json(&bench, &["out/column"]);
@@ -44,7 +47,10 @@ fn a_run_that_is_done() {
     }
     let rows = bench.read("out/column/history.csv");
     let (header, rows) = rows.split_once('\n').unwrap();
-    let at = header.split(',').position(|c| c == "bottom.displacement.z").unwrap();
+    let at = header
+        .split(',')
+        .position(|c| c == "bottom.displacement.z")
+        .unwrap();
     let values: Vec<[f64; 2]> = rows
         .lines()
         .map(|row| {
@@ -53,10 +59,20 @@ fn a_run_that_is_done() {
         })
         .collect();
     let columns = run["columns"].as_array().unwrap();
-    let column = columns.iter().find(|c| c["name"] == "bottom.displacement.z").unwrap();
-    let least = values.iter().copied().reduce(|a, b| if b[1] < a[1] { b } else { a }).unwrap();
+    let column = columns
+        .iter()
+        .find(|c| c["name"] == "bottom.displacement.z")
+        .unwrap();
+    let least = values
+        .iter()
+        .copied()
+        .reduce(|a, b| if b[1] < a[1] { b } else { a })
+        .unwrap();
     assert_eq!(column["unit"], "m");
-    assert_eq!([&column["least_at"], &column["least"]].map(|v| v.as_f64().unwrap()), least);
+    assert_eq!(
+        [&column["least_at"], &column["least"]].map(|v| v.as_f64().unwrap()),
+        least
+    );
     assert_eq!(column["last"].as_f64().unwrap(), values.last().unwrap()[1]);
 
     // The fields' extremes: the load's 1 kPa is in the stress, and some frame has more of it than the last.
@@ -66,7 +82,10 @@ fn a_run_that_is_done() {
         field["greatest"]["value"].as_f64().unwrap()
     };
     let all = json(&bench, &["out/column", "--frames"]);
-    assert_eq!([&run["frames_seen"], &all["frames_seen"]].map(|n| n.as_u64().unwrap()), [1, 5]);
+    assert_eq!(
+        [&run["frames_seen"], &all["frames_seen"]].map(|n| n.as_u64().unwrap()),
+        [1, 5]
+    );
     let pressure = greatest(&run, "mean_pressure");
     assert!((200.0..1000.0).contains(&pressure), "{pressure}");
     assert!(greatest(&all, "velocity.norm") >= greatest(&run, "velocity.norm"));
@@ -82,27 +101,46 @@ fn runs_that_are_stopped_interrupted_and_cut_off() {
     let bench = Bench::with(&COLUMN.replace("duration = \"0.2 s\"", until));
     bench.fails(5, &["run", "column"]);
     let said = bench.done(&["inspect", "out/column"]);
-    assert!(said.contains("out/column: stopped, t = 0.02 s after "), "{said}");
+    assert!(
+        said.contains("out/column: stopped, t = 0.02 s after "),
+        "{said}"
+    );
     assert!(said.contains("without equilibrium"), "{said}");
     assert!(said.contains("`loading` from 0 s, not completed"), "{said}");
     assert!(said.contains("checkpoints checkpoints/"), "{said}");
 
     // One that goes on for ever, looked at on its way and when it was interrupted.
     bench.write("long/scene.toml", &COLUMN.replace("\"0.2 s\"", "\"1e5 s\""));
-    let mut run = bench.command(&["run", "long"]).stderr(Stdio::null()).spawn().unwrap();
-    wait(|| bench.path("out/long/particles.pvd").exists() && bench.path("out/long/checkpoints/0.checkpoint").exists());
+    let mut run = bench
+        .command(&["run", "long"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    wait(|| {
+        bench.path("out/long/particles.pvd").exists()
+            && bench.path("out/long/checkpoints/0.checkpoint").exists()
+    });
     let going_on = json(&bench, &["out/long"]);
     assert_eq!(going_on["state"], "at-work");
     assert_eq!(going_on["summary"], Value::Null);
     let pid = run.id().to_string();
-    assert!(std::process::Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    assert!(
+        std::process::Command::new("kill")
+            .args(["-INT", &pid])
+            .status()
+            .unwrap()
+            .success()
+    );
     assert_eq!(run.wait().unwrap().code(), Some(130));
     let interrupted = json(&bench, &["out/long"]);
     assert_eq!(interrupted["state"], "interrupted");
     let checkpoint = &interrupted["checkpoints"][0];
     assert!(checkpoint["step"].as_u64() > Some(0));
     let said = bench.done(&["inspect", "out/long"]);
-    assert!(said.contains("; `moldwarp resume out/long` goes on from its last checkpoint"), "{said}");
+    assert!(
+        said.contains("; `moldwarp resume out/long` goes on from its last checkpoint"),
+        "{said}"
+    );
     let path = checkpoint["path"].as_str().unwrap();
     let alone = bench.done(&["inspect", path]);
     assert!(alone.contains("of `long` by moldwarp"), "{alone}");
@@ -123,7 +161,10 @@ fn runs_that_are_stopped_interrupted_and_cut_off() {
 fn wait(ready: impl Fn() -> bool) {
     let start = Instant::now();
     while !ready() {
-        assert!(start.elapsed() < Duration::from_secs(20), "the run does not begin");
+        assert!(
+            start.elapsed() < Duration::from_secs(20),
+            "the run does not begin"
+        );
         std::thread::sleep(Duration::from_millis(20));
     }
 }
@@ -133,7 +174,10 @@ fn a_sweep() {
     let bench = Bench::with(&COLUMN.replace("\"0.2 s\"", "\"0.02 s\""));
     bench.done(&["sweep", "column", "--vary", "numerics.courant=0.3,0.5"]);
     let said = bench.done(&["inspect", "out/column-sweep"]);
-    assert!(said.contains("a sweep of 2 runs, 2 ended, 2 of them done"), "{said}");
+    assert!(
+        said.contains("a sweep of 2 runs, 2 ended, 2 of them done"),
+        "{said}"
+    );
     assert!(said.contains("numerics.courant=0.5: done"), "{said}");
     let sweep = json(&bench, &["out/column-sweep"]);
     assert_eq!(sweep["runs"][1]["values"][0]["value"], "0.5");

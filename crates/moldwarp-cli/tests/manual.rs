@@ -7,14 +7,23 @@ use common::Bench;
 /// The commands, as the help lists them, each with its options.
 fn commands(bench: &Bench) -> Vec<(String, Vec<String>)> {
     let help = bench.done(&["--help"]);
-    let list = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let list = help
+        .split("Commands:")
+        .nth(1)
+        .unwrap()
+        .split("Options:")
+        .next()
+        .unwrap();
     let names = list.lines().filter_map(|line| {
         let name = line.strip_prefix("  ")?.split_whitespace().next()?;
         (line.as_bytes()[2] != b' ' && name != "help").then(|| name.to_owned())
     });
     let options = |name: &str| {
         let help = bench.done(&[name, "--help"]);
-        let words = help.lines().map(str::trim_start).filter(|l| l.starts_with("--") || l.starts_with("-h"));
+        let words = help
+            .lines()
+            .map(str::trim_start)
+            .filter(|l| l.starts_with("--") || l.starts_with("-h"));
         let option = |line: &str| {
             let word = line.split("--").nth(1)?;
             let end = word.find(|c: char| !c.is_ascii_alphanumeric() && c != '-');
@@ -37,7 +46,10 @@ fn completions_have_every_command_and_option() {
             for option in options {
                 let long = option.trim_start_matches('-');
                 let fish = format!("-l {long}");
-                assert!(script.contains(option.as_str()) || script.contains(&fish), "{shell}: {name} {option}");
+                assert!(
+                    script.contains(option.as_str()) || script.contains(&fish),
+                    "{shell}: {name} {option}"
+                );
             }
         }
         assert!(!script.contains("sweep-part"), "{shell}");
@@ -53,7 +65,9 @@ fn manual_pages_have_every_command_and_option() {
     bench.done(&["man", "pages"]);
     for (name, options) in commands(&bench) {
         assert!(whole.contains(&format!("moldwarp-{name}")), "{name}");
-        let page = bench.read(&format!("pages/moldwarp-{name}.1")).replace("\\-", "-");
+        let page = bench
+            .read(&format!("pages/moldwarp-{name}.1"))
+            .replace("\\-", "-");
         assert!(page.contains(&format!("moldwarp {name}")), "{name}: {page}");
         for option in options {
             assert!(page.contains(&option), "{name} {option}");

@@ -13,9 +13,15 @@ fn bench() -> Bench {
 /// The line of a curve as points on the page, of the `number`-th one.
 fn curve(svg: &str, number: usize) -> Vec<[f64; 2]> {
     let lines = svg.lines().filter(|l| l.contains("clip-path"));
-    let line = lines.clone().nth(number).unwrap_or_else(|| panic!("{} curves", lines.count()));
+    let line = lines
+        .clone()
+        .nth(number)
+        .unwrap_or_else(|| panic!("{} curves", lines.count()));
     let path = line.split('"').nth(1).unwrap().replace(['M', 'L'], " ");
-    let numbers: Vec<f64> = path.split_whitespace().map(|n| n.parse().unwrap()).collect();
+    let numbers: Vec<f64> = path
+        .split_whitespace()
+        .map(|n| n.parse().unwrap())
+        .collect();
     numbers.chunks(2).map(|p| [p[0], p[1]]).collect()
 }
 
@@ -31,13 +37,25 @@ fn the_curve_is_that_of_the_history() {
     }
     // Its last point is as far down between first and deepest value as the history says.
     let history = bench.read("out/column/history.csv");
-    let at = history.lines().next().unwrap().split(',').position(|c| c == what[1]).unwrap();
-    let values: Vec<f64> =
-        history.lines().skip(1).map(|row| row.split(',').nth(at).unwrap().parse().unwrap()).collect();
+    let at = history
+        .lines()
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|c| c == what[1])
+        .unwrap();
+    let values: Vec<f64> = history
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').nth(at).unwrap().parse().unwrap())
+        .collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let points = curve(&svg, 0);
-    let low = points.iter().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max);
+    let low = points
+        .iter()
+        .map(|p| p[1])
+        .fold(f64::NEG_INFINITY, f64::max);
     let high = points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     let [first, last] = [values[0], values[values.len() - 1]];
     for (value, point) in [(first, points[0]), (last, points[points.len() - 1])] {
@@ -52,8 +70,21 @@ fn runs_sweeps_and_references_share_a_plot() {
     let bench = bench();
     bench.done(&["sweep", "column", "--vary", "numerics.courant=0.3,0.5"]);
     bench.write("exact.csv", "time,value\n0,0\n0.05,-0.002\n");
-    let what = ["--what", "bottom.displacement.z", "--output", "all.svg", "--output", "all.png"];
-    let more = ["--reference", "theory=exact.csv", "--scene-hash", "--title", "All"];
+    let what = [
+        "--what",
+        "bottom.displacement.z",
+        "--output",
+        "all.svg",
+        "--output",
+        "all.png",
+    ];
+    let more = [
+        "--reference",
+        "theory=exact.csv",
+        "--scene-hash",
+        "--title",
+        "All",
+    ];
     let outs = ["plot", "out/column", "out/column-sweep"];
     bench.done(&[&outs[..], &what, &more].concat());
     let svg = bench.read("all.svg");
@@ -66,10 +97,30 @@ fn runs_sweeps_and_references_share_a_plot() {
     let png = std::fs::read(bench.path("all.png")).unwrap();
     assert!(png.starts_with(b"\x89PNG") && png.len() < 300_000);
 
-    bench.done(&["plot", "out/column", "--what", "energy", "--log-y", "--size", "16x9"]);
+    bench.done(&[
+        "plot",
+        "out/column",
+        "--what",
+        "energy",
+        "--log-y",
+        "--size",
+        "16x9",
+    ]);
     assert!(bench.path("plot.png").exists());
-    let loops = ["--what", "bottom.displacement.z", "--against", "energy.kinetic"];
-    bench.done(&[&["plot", "out/column"], &loops[..], &["--x-range", "0", "1 mJ"]].concat());
+    let loops = [
+        "--what",
+        "bottom.displacement.z",
+        "--against",
+        "energy.kinetic",
+    ];
+    bench.done(
+        &[
+            &["plot", "out/column"],
+            &loops[..],
+            &["--x-range", "0", "1 mJ"],
+        ]
+        .concat(),
+    );
 }
 
 #[test]
@@ -101,6 +152,16 @@ fn what_cannot_be_drawn_is_said() {
     ];
     insta::assert_snapshot!(lines.join("\n"));
     assert_eq!(bench.files(), before);
-    let said = bench.fails(4, &["plot", "out/column", "--what", z, "--output", "no/where.png"]);
+    let said = bench.fails(
+        4,
+        &[
+            "plot",
+            "out/column",
+            "--what",
+            z,
+            "--output",
+            "no/where.png",
+        ],
+    );
     assert!(said.contains("cannot write no/where.png"), "{said}");
 }

@@ -14,7 +14,11 @@ fn recorded() -> Vec<(Entry, Record)> {
         own.rows.retain(|row| entry.files.contains(&row[0]));
         (entry, own)
     };
-    entries().expect("pictures.toml").into_iter().map(of).collect()
+    entries()
+        .expect("pictures.toml")
+        .into_iter()
+        .map(of)
+        .collect()
 }
 
 #[test]
@@ -33,7 +37,10 @@ fn every_picture_is_of_its_scene_as_it_is_now() {
                 let now = known.entry(scene.clone()).or_insert_with(|| {
                     fingerprint(scene).unwrap_or_else(|e| panic!("{scene}: {e}"))
                 });
-                let mut rows = record.rows.iter().filter(|row| row[0] == *file && row[1] == *scene);
+                let mut rows = record
+                    .rows
+                    .iter()
+                    .filter(|row| row[0] == *file && row[1] == *scene);
                 match rows.next() {
                     None => wrong.push(format!("{file} has no row for {scene} in pictures.csv")),
                     Some(row) if (&row[2][..], &row[3]) != (now.0, &now.1) => {
@@ -60,7 +67,12 @@ fn the_record_has_no_other_pictures() {
     for row in Record::read().expect("pictures.csv").rows {
         let entry = entries.iter().find(|e| e.files.contains(&row[0]));
         let entry = entry.unwrap_or_else(|| panic!("{} is not in pictures.toml", row[0]));
-        assert!(entry.scenes.contains(&row[1]), "{} is not made from {}", row[0], row[1]);
+        assert!(
+            entry.scenes.contains(&row[1]),
+            "{} is not made from {}",
+            row[0],
+            row[1]
+        );
     }
 }
 
@@ -68,10 +80,18 @@ fn the_record_has_no_other_pictures() {
 fn all_pictures_that_are_shown_are_in_the_list_and_the_other_way_round() {
     let shown = shown();
     assert!(shown.len() > 20, "the pages show pictures");
-    let listed: Vec<PathBuf> =
-        entries().expect("pictures.toml").iter().flat_map(|e| &e.files).map(PathBuf::from).collect();
+    let listed: Vec<PathBuf> = entries()
+        .expect("pictures.toml")
+        .iter()
+        .flat_map(|e| &e.files)
+        .map(PathBuf::from)
+        .collect();
     for (picture, page) in &shown {
-        assert!(root().join(picture).is_file(), "{page} shows {}, which is not there", picture.display());
+        assert!(
+            root().join(picture).is_file(),
+            "{page} shows {}, which is not there",
+            picture.display()
+        );
         // Those are made by the cases, which need no scene.
         let of_a_case = picture.starts_with("validation/results");
         assert!(
@@ -81,7 +101,11 @@ fn all_pictures_that_are_shown_are_in_the_list_and_the_other_way_round() {
         );
     }
     for picture in &listed {
-        assert!(shown.contains_key(picture), "no page shows {}", picture.display());
+        assert!(
+            shown.contains_key(picture),
+            "no page shows {}",
+            picture.display()
+        );
     }
 }
 
@@ -122,7 +146,10 @@ fn pictures_of(page: &str) -> Vec<&str> {
         let (_, rest) = rest.split_once("src=\"")?;
         rest.split('"').next()
     });
-    images.chain(tags).filter(|file| !file.contains("://")).collect()
+    images
+        .chain(tags)
+        .filter(|file| !file.contains("://"))
+        .collect()
 }
 
 /// Without `..`.
@@ -141,7 +168,11 @@ fn plain(path: &Path) -> PathBuf {
 
 #[test]
 fn references_are_found() {
-    let page = "a ![x [y]](a/b.png) <img alt=\"c\" src=\"d.svg\" width=\"3\"> ![](https://e.org/f.png)";
+    let page =
+        "a ![x [y]](a/b.png) <img alt=\"c\" src=\"d.svg\" width=\"3\"> ![](https://e.org/f.png)";
     assert_eq!(pictures_of(page), ["a/b.png", "d.svg"]);
-    assert_eq!(plain(Path::new("book/src/tutorials/../../../examples/a.png")), Path::new("examples/a.png"));
+    assert_eq!(
+        plain(Path::new("book/src/tutorials/../../../examples/a.png")),
+        Path::new("examples/a.png")
+    );
 }

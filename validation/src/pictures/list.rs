@@ -39,7 +39,10 @@ pub fn entries() -> Result<Vec<Entry>, Failure> {
 impl Entry {
     /// Whether a file or a scene has this in its name.
     pub fn is_called(&self, name: &str) -> bool {
-        self.files.iter().chain(&self.scenes).any(|file| file.contains(name))
+        self.files
+            .iter()
+            .chain(&self.scenes)
+            .any(|file| file.contains(name))
     }
 
     /// The folder of the first scene.

@@ -40,9 +40,20 @@ pub fn make(arguments: &[String]) -> Result<bool, Failure> {
     };
     let out = std::path::absolute(out)?;
     let entries = entries()?;
-    if let Some(unknown) = names.iter().find(|name| !entries.iter().any(|e| e.is_called(name))) {
-        let all: Vec<&str> = entries.iter().flat_map(|e| &e.files).map(String::as_str).collect();
-        return Err(format!("no picture is called `{unknown}`; there are\n  {}", all.join("\n  ")).into());
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| !entries.iter().any(|e| e.is_called(name)))
+    {
+        let all: Vec<&str> = entries
+            .iter()
+            .flat_map(|e| &e.files)
+            .map(String::as_str)
+            .collect();
+        return Err(format!(
+            "no picture is called `{unknown}`; there are\n  {}",
+            all.join("\n  ")
+        )
+        .into());
     }
     let mut record = Record::read()?;
     let mut all_made = true;
@@ -72,7 +83,10 @@ fn draw(entry: &Entry, out: &Path) -> Result<(), Failure> {
         let scene = arguments.first().ok_or("`stress` needs its scene")?;
         return example::draw_stress(scene, &file);
     }
-    let folders = entry.scenes.iter().map(|scene| runs::results(scene, entry.sweep.as_deref(), out));
+    let folders = entry
+        .scenes
+        .iter()
+        .map(|scene| runs::results(scene, entry.sweep.as_deref(), out));
     let folders: Vec<PathBuf> = folders.collect::<Result<_, Failure>>()?;
     let mut command = match &tool[..] {
         "moldwarp" => Command::new(runs::program()?),
@@ -85,7 +99,10 @@ fn draw(entry: &Entry, out: &Path) -> Result<(), Failure> {
         let mut text = argument.replace("{file}", &file.display().to_string());
         text = text.replace("{to}", &to.display().to_string());
         for (number, folder) in folders.iter().enumerate() {
-            text = text.replace(&format!("{{{}}}", number + 1), &folder.display().to_string());
+            text = text.replace(
+                &format!("{{{}}}", number + 1),
+                &folder.display().to_string(),
+            );
         }
         command.arg(text);
     }

@@ -8,7 +8,14 @@ use moldwarp_io::output::hash::scene_hash;
 use moldwarp_io::scene;
 use std::path::{Path, PathBuf};
 
-const COLUMNS: [&str; 6] = ["picture", "scene", "kind", "fingerprint", "commit", "made by"];
+const COLUMNS: [&str; 6] = [
+    "picture",
+    "scene",
+    "kind",
+    "fingerprint",
+    "commit",
+    "made by",
+];
 
 /// A row a picture and scene.
 #[derive(Clone, Debug, Default)]
@@ -28,7 +35,10 @@ pub fn fingerprint(scene: &str) -> Result<(&'static str, String), Failure> {
     let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     let table: toml::Table = text.parse()?;
-    let mesh = table.get("mesh").and_then(|mesh| mesh.get("file")).and_then(toml::Value::as_str);
+    let mesh = table
+        .get("mesh")
+        .and_then(|mesh| mesh.get("file"))
+        .and_then(toml::Value::as_str);
     let set = sets.iter().find_map(|set| set.strip_prefix("mesh.file="));
     let mesh = set.or(mesh);
     // Fine meshes are made beside the scenes and not committed: whether one is there just now is no matter.
@@ -48,7 +58,9 @@ pub fn fingerprint(scene: &str) -> Result<(&'static str, String), Failure> {
 /// The names of meshes that .gitignore has are those of fine ones.
 fn committed(mesh: &Path) -> bool {
     let name = mesh.file_name().unwrap_or_default();
-    !["fine.msh", "medium.msh", "finest.msh", "blunt.msh"].iter().any(|fine| name == *fine)
+    !["fine.msh", "medium.msh", "finest.msh", "blunt.msh"]
+        .iter()
+        .any(|fine| name == *fine)
 }
 
 fn geometries(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
@@ -77,7 +89,10 @@ impl Record {
         if table.names != COLUMNS {
             return Err("pictures.csv has other columns".into());
         }
-        let row = |row: Vec<String>| row.try_into().map_err(|_| "a row of pictures.csv is too short");
+        let row = |row: Vec<String>| {
+            row.try_into()
+                .map_err(|_| "a row of pictures.csv is too short")
+        };
         let rows: Result<_, _> = table.rows.into_iter().map(row).collect();
         Ok(Record { rows: rows? })
     }

@@ -24,7 +24,10 @@ pub(super) fn results(scene: &str, sweep: Option<&str>, out: &Path) -> Result<Pa
     let (path, sets) = file_and_sets(scene);
     let loaded = scene::load(&path, &sets)?;
     // `mesh.file=medium.msh` goes to `CASE-medium`.
-    let value = sets.first().and_then(|set| set.rsplit('=').next()).map(Path::new);
+    let value = sets
+        .first()
+        .and_then(|set| set.rsplit('=').next())
+        .map(Path::new);
     let suffix = match (sweep, value.and_then(Path::file_stem)) {
         (Some(_), _) => "-sweep".to_owned(),
         (None, Some(value)) => format!("-{}", value.to_string_lossy()),
@@ -39,7 +42,9 @@ pub(super) fn results(scene: &str, sweep: Option<&str>, out: &Path) -> Result<Pa
     if !there {
         println!("{scene} is computed into {}", folder.display());
         let mut command = Command::new(program()?);
-        command.arg(if sweep.is_some() { "sweep" } else { "run" }).arg(&path);
+        command
+            .arg(if sweep.is_some() { "sweep" } else { "run" })
+            .arg(&path);
         command.arg("--out").arg(&folder);
         sets.iter().for_each(|set| {
             command.args(["--set", set]);
@@ -63,7 +68,9 @@ fn is_of(folder: &Path, hash: &str) -> bool {
 /// Runs a command, which has to come to its end well.
 pub(super) fn done(command: &mut Command) -> Result<(), Failure> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let status = command.status().map_err(|e| format!("cannot run {name}: {e}"))?;
+    let status = command
+        .status()
+        .map_err(|e| format!("cannot run {name}: {e}"))?;
     match status.success() {
         true => Ok(()),
         false => Err(format!("{name} ended with {status}").into()),

@@ -9,7 +9,7 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// Number of its style; each has a colour and a kind of line that tell it from the others.
     pub style: usize,
-    /// Something to compare with: it is thin, black and dashed, whatever its style.
+    /// Something to compare with: it is thin, black and dashed; styles differ in their dashes.
     pub reference: bool,
 }
 
@@ -23,10 +23,10 @@ impl Curve {
         }
     }
 
-    pub fn reference(label: impl Into<String>, points: Vec<(f64, f64)>) -> Curve {
+    pub fn reference(label: impl Into<String>, points: Vec<(f64, f64)>, style: usize) -> Curve {
         Curve {
             reference: true,
-            ..Curve::new(label, points, 0)
+            ..Curve::new(label, points, style)
         }
     }
 }

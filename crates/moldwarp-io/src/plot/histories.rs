@@ -128,6 +128,7 @@ pub fn histories(shown: &Shown) -> Result<Plot, HistoriesError> {
             });
         }
     }
+    leave_zeros_out(&mut raw, &mut sets, &shown.what);
     let x_si = si_unit(&shown.against, shown);
     let y_si = common_unit(&sets)?;
     let references = references(&shown.references)?;
@@ -171,10 +172,35 @@ pub fn histories(shown: &Shown) -> Result<Plot, HistoriesError> {
         plot.curves
             .push(Curve::new(label, scaled(&r.points), style));
     }
-    for (label, points) in &references {
-        plot.curves.push(Curve::reference(label, scaled(points)));
+    for (style, (label, points)) in references.iter().enumerate() {
+        plot.curves
+            .push(Curve::reference(label, scaled(points), style));
     }
     Ok(plot)
+}
+
+/// Columns that are zero throughout in all runs are not wanted by whoever has named only the beginning of
+/// their names: of all energies, say, those that a scene does not have.
+fn leave_zeros_out(raw: &mut Vec<Raw>, sets: &mut Vec<(String, String)>, what: &[String]) {
+    let named: Vec<&str> = what
+        .iter()
+        .flat_map(|entry| entry.split(','))
+        .map(str::trim)
+        .collect();
+    let has_values = |column: &str| {
+        let own = raw.iter().filter(|r| r.column == column);
+        own.flat_map(|r| &r.points).any(|p| p.1 != 0.0)
+    };
+    let kept = |column: &str| named.contains(&column) || has_values(column);
+    let kept: Vec<String> = sets
+        .iter()
+        .map(|s| s.0.clone())
+        .filter(|c| kept(c))
+        .collect();
+    if !kept.is_empty() {
+        raw.retain(|r| kept.contains(&r.column));
+        sets.retain(|s| kept.contains(&s.0));
+    }
 }
 
 fn references(wanted: &[Reference]) -> Result<Vec<(String, Vec<(f64, f64)>)>, HistoriesError> {

@@ -4,7 +4,7 @@ use super::curve::thinned;
 use super::scale::Scale;
 use super::shapes::{Anchor, Page, Shape};
 use super::style::{BLACK, FAINT, INK, Stroke};
-use super::{CENTIMETRE, Plot, PlotError, font};
+use super::{CENTIMETRE, Curve, Plot, PlotError, font};
 
 /// Least width and height of the plot itself, cm.
 const LEAST: f64 = 1.8;
@@ -330,8 +330,11 @@ fn caption_height(plot: &Plot) -> f64 {
 
 fn scales(plot: &Plot) -> Result<(Scale, Scale), PlotError> {
     let points = || plot.curves.iter().flat_map(|c| &c.points);
+    // Time goes from edge to edge; a curve that turns round needs room to do so.
+    let turns = |c: &Curve| c.points.windows(2).any(|w| w[1].0 < w[0].0);
+    let room = plot.curves.iter().any(turns);
     let x =
-        Scale::of(points().map(|p| p.0), plot.x_range, false, false).ok_or(PlotError::Empty(""))?;
+        Scale::of(points().map(|p| p.0), plot.x_range, false, room).ok_or(PlotError::Empty(""))?;
     // What lies beside the axis does not stretch the other one.
     let within = |p: &&(f64, f64)| (x.low..=x.high).contains(&p.0);
     let values = points().filter(within).map(|p| p.1);

@@ -124,7 +124,8 @@ impl Plot {
 
     /// Adds what the curves are to be compared with: thin, black and dashed.
     pub fn dashed(&mut self, label: impl Into<String>, points: Vec<(f64, f64)>) {
-        self.curves.push(Curve::reference(label, points));
+        let style = self.curves.iter().filter(|c| c.reference).count();
+        self.curves.push(Curve::reference(label, points, style));
     }
 
     /// The plot as the text of an SVG file.

@@ -8,6 +8,9 @@ pub(super) struct Scale {
     pub log: bool,
 }
 
+/// A logarithmic axis goes no farther below its greatest value than this factor: what is smaller is
+/// round-off, most of the time.
+const DEEPEST: f64 = 1e-9;
 /// Share of the values' range that is left free at either end.
 const MARGIN: f64 = 0.03;
 
@@ -30,6 +33,7 @@ impl Scale {
             return None;
         }
         if log {
+            let low = low.max(DEEPEST * high);
             // Whole decades, unless the values take up less than one.
             let (low, high) = match (high / low).log10() < 1.0 {
                 true => (low / 1.5, high * 1.5),
@@ -206,6 +210,8 @@ mod tests {
         assert_eq!(of(&[-1.0, 0.0], true), None);
         let log = of(&[0.0, 0.02, 30.0], true).unwrap();
         assert!((log.low - 0.01).abs() < 1e-12 && (log.high - 100.0).abs() < 1e-9);
+        let deep = of(&[1e-30, 1.0], true).unwrap();
+        assert!((deep.low / 1e-9 - 1.0).abs() < 1e-9);
         assert!((log.share(1.0) - 0.5).abs() < 1e-12 && log.share(0.0).is_nan());
     }
 }

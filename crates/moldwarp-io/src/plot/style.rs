@@ -30,7 +30,12 @@ pub(super) const DASHES: [&[f64]; 5] = [
     &[7.0, 2.0, 1.2, 2.0],
     &[9.0, 2.0, 3.0, 2.0],
 ];
-const REFERENCE: &[f64] = &[4.0, 2.5];
+const REFERENCES: [&[f64]; 4] = [
+    &[4.0, 2.5],
+    &[1.2, 1.8],
+    &[8.0, 2.5, 1.2, 2.5],
+    &[12.0, 3.0],
+];
 
 /// A line as it is drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +59,7 @@ impl Stroke {
     /// The line of a curve.
     pub fn of(curve: &Curve) -> Stroke {
         let (colour, width, dash) = match curve.reference {
-            true => (BLACK, 0.9, REFERENCE),
+            true => (BLACK, 0.9, REFERENCES[curve.style % REFERENCES.len()]),
             false => {
                 let (round, number) = (curve.style / COLOURS.len(), curve.style % COLOURS.len());
                 // Curves of one colour come once a round, and each round has other dashes.

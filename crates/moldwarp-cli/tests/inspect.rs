@@ -39,6 +39,25 @@ fn a_run_that_is_done() {
     let run = json(&bench, &["out/column"]);
     let summary = bench.summary("out/column");
     assert_eq!(run["state"], "done");
+    // Without the summary, units are known by the columns' names.
+    std::fs::rename(
+        bench.path("out/column/summary.json"),
+        bench.path("summary.json"),
+    )
+    .unwrap();
+    let before_its_end = json(&bench, &["out/column"]);
+    std::fs::rename(
+        bench.path("summary.json"),
+        bench.path("out/column/summary.json"),
+    )
+    .unwrap();
+    assert_eq!(before_its_end["state"], "cut-off");
+    for column in before_its_end["columns"].as_array().unwrap() {
+        assert_eq!(
+            column["unit"],
+            summary["units"][column["name"].as_str().unwrap()]
+        );
+    }
     assert_eq!(run["summary"], summary);
     assert_eq!(run["time"], summary["time"]);
     assert_eq!(run["stages"][0]["ends"], summary["time"]);

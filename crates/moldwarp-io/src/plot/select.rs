@@ -79,20 +79,17 @@ fn matches(pattern: &str, text: &str) -> bool {
 }
 
 fn unknown(name: &str, columns: &[String]) -> SelectError {
-    let list = || suggest::list(columns.iter().map(String::as_str));
-    let help = match suggest::nearest(name, columns.iter().map(String::as_str)) {
-        Some(near) => format!("did you mean `{near}`? columns: {}", list()),
-        None => {
-            let whole: Vec<&str> = columns.iter().flat_map(|c| beginnings(c)).collect();
-            match suggest::nearest(name.trim_end_matches('.'), whole) {
-                Some(near) => format!("did you mean `{near}`? columns: {}", list()),
-                None => format!("columns: {}", list()),
-            }
-        }
-    };
+    let list = suggest::list(columns.iter().map(String::as_str));
+    let whole = columns.iter().map(String::as_str);
+    let all: Vec<&str> = whole
+        .chain(columns.iter().flat_map(|c| beginnings(c)))
+        .collect();
     SelectError::Unknown {
         wanted: name.to_owned(),
-        help,
+        help: match suggest::nearest(name.trim_end_matches('.'), all) {
+            Some(near) => format!("did you mean `{near}`? columns: {list}"),
+            None => format!("columns: {list}"),
+        },
     }
 }
 

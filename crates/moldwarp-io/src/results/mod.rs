@@ -288,6 +288,3 @@ fn no_run(path: &Path) -> ResultsError {
         help,
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -146,7 +146,7 @@ fn rename(runs: &mut [ShownRun], labels: &[String]) -> Result<(), Failure> {
     if !labels.is_empty() && labels.len() != runs.len() {
         return Err(Failure::input(miette::miette!(
             help = "give one `--label` for each run, in their order",
-            "there are {} runs and {} labels",
+            "runs: {}, labels: {}",
             runs.len(),
             labels.len()
         )));

@@ -32,7 +32,7 @@ fn the_curve_is_that_of_the_history() {
     let said = bench.done(&[&["plot", "out/column"], &what[..], &["--output", "z.svg"]].concat());
     assert_eq!(said, "plot: z.svg\n");
     let svg = bench.read("z.svg");
-    for text in ["time (ms)", "displacement z of bottom (mm)"] {
+    for text in ["time (s)", "displacement z of bottom (mm)"] {
         assert!(svg.contains(&format!(">{text}</text>")), "{text}");
     }
     // Its last point is as far down between first and deepest value as the history says.

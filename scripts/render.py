@@ -182,10 +182,6 @@ def render(args):
     if scene:
         plotter.add_text(f"scene {scene[:12]}", position=(8, 6), font_size=6, color="#80868f")
     plotter.screenshot(args.output)
-    if args.colours:
-        from PIL import Image
-
-        Image.open(args.output).convert("RGB").quantize(args.colours).save(args.output, optimize=True)
     print(f"{args.output}: {name} at t = {time:g} s, "
           f"{shown.min():.4g} to {shown.max():.4g} {unit_name}")
 
@@ -250,8 +246,6 @@ def arguments():
     parser.add_argument("--size", type=int, nargs=2, default=(900, 1200), metavar=("W", "H"))
     parser.add_argument("--flat", action="store_true",
                         help="look along y, for plane strain; a wide --size suits it")
-    parser.add_argument("--colours", type=int, metavar="N",
-                        help="keep so many, which makes the file small (needs pillow)")
     parser.add_argument("--output", default="picture.png")
     return parser.parse_args()
 

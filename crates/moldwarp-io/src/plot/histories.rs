@@ -203,7 +203,10 @@ fn leave_zeros_out(raw: &mut Vec<Raw>, sets: &mut Vec<(String, String)>, what: &
     }
 }
 
-fn references(wanted: &[Reference]) -> Result<Vec<(String, Vec<(f64, f64)>)>, HistoriesError> {
+/// A reference's label and its points.
+type Labelled = (String, Vec<(f64, f64)>);
+
+fn references(wanted: &[Reference]) -> Result<Vec<Labelled>, HistoriesError> {
     let read = |reference: &Reference| {
         let table = csv::read(&reference.file)?;
         let [x, y, ..] = &table.columns[..] else {

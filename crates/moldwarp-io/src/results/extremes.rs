@@ -105,8 +105,9 @@ fn of_frame(frame: &Frame) -> Vec<FieldRange> {
 
 /// None where no value is finite and there is none that is not.
 fn range(frame: &Frame, name: String, values: impl Iterator<Item = f64>) -> Option<FieldRange> {
-    let (mut least, mut greatest, mut not_finite): (Option<(f64, usize)>, Option<(f64, usize)>, _) =
-        (None, None, 0);
+    let mut least: Option<(f64, usize)> = None;
+    let mut greatest: Option<(f64, usize)> = None;
+    let mut not_finite = 0;
     for (at, value) in values.enumerate() {
         if !value.is_finite() {
             not_finite += 1;

@@ -1,6 +1,6 @@
 //! Line plots for papers, as SVG and PNG.
 //!
-//! A [`Plot`] says what is to be shown, [`layout`](layout) places it on the page in points (1/72 inch),
+//! A [`Plot`] says what is to be shown, `layout` places it on the page in points (1/72 inch),
 //! and one of two writers draws it. Both measure text with the same font, so that they show the same.
 
 mod curve;

@@ -12,6 +12,7 @@ ends, for pictures that are to be compared. --flat --size 1400 560 is for sectio
 """
 
 import argparse
+import json
 import os
 import sys
 
@@ -177,9 +178,21 @@ def render(args):
     else:
         bar_beside(plotter, title, steps, f"t = {time:.3g} s", width, height)
         look_from_the_side(plotter, bounds, width, height)
+    scene = scene_hash(args.folder)
+    if scene:
+        plotter.add_text(f"scene {scene[:12]}", position=(8, 6), font_size=6, color="#80868f")
     plotter.screenshot(args.output)
     print(f"{args.output}: {name} at t = {time:g} s, "
           f"{shown.min():.4g} to {shown.max():.4g} {unit_name}")
+
+
+def scene_hash(folder):
+    """The scene's fingerprint, so that the picture says what it is of; none before the run's end."""
+    path = os.path.join(folder, "summary.json")
+    if not os.path.exists(path):
+        return None
+    with open(path) as file:
+        return json.load(file)["scene_hash"]
 
 
 def look_along_y(plotter, bounds, width, height):

@@ -29,6 +29,18 @@ DEEP = 6.5  # depth of the picture over D
 LAYER = 0.25  # thickness of the layers that are told apart, m
 
 
+SCENES = []  # fingerprints of the runs' scenes, which stand small in every picture
+
+
+def stamp(figure):
+    figure.text(0.004, 0.004, "scene " + ", ".join(SCENES), fontsize=4, color="0.5")
+
+
+def scene(folder):
+    with open(os.path.join(folder, "summary.json")) as file:
+        return json.load(file)["scene_hash"][:12]
+
+
 def history(folder):
     with open(os.path.join(folder, "history.csv")) as file:
         rows = list(csv.DictReader(file))
@@ -95,6 +107,7 @@ def depths(all_runs, to):
     axes.grid(alpha=0.3)
     axes.legend()
     figure.tight_layout()
+    stamp(figure)
     figure.savefig(os.path.join(to, "penetration.png"), dpi=110)
 
 
@@ -114,6 +127,7 @@ def resistance(all_runs, to):
     axes.grid(alpha=0.3)
     axes.legend()
     figure.tight_layout()
+    stamp(figure)
     figure.savefig(os.path.join(to, "resistance.png"), dpi=110)
 
 
@@ -142,6 +156,7 @@ def section(folder, to):
     left.set(ylabel="z, m", title="mesh")
     right.set(title=f"particles at {depth:.2f} D, layers of {LAYER} m")
     figure.tight_layout()
+    stamp(figure)
     figure.savefig(os.path.join(to, "section.png"), dpi=110)
 
 
@@ -151,6 +166,7 @@ def main():
     parser.add_argument("--to", default=".")
     arguments = parser.parse_args()
     found = runs(arguments.sweep)
+    SCENES.extend(scene(folder) for _, folder in found)
     for mu, folder in found:
         report(mu, folder)
     depths(found, arguments.to)

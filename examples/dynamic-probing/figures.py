@@ -30,6 +30,18 @@ SQUARE = 0.2 * D  # stresses are means over squares of this side, m
 LAYER = D  # thickness of the layers that are drawn in two colours, m
 
 
+SCENES = []  # fingerprints of the runs' scenes, which stand small in every picture
+
+
+def stamp(figure):
+    figure.text(0.004, 0.004, "scene " + ", ".join(SCENES), fontsize=4, color="0.5")
+
+
+def scene(folder):
+    with open(os.path.join(folder, "summary.json")) as file:
+        return json.load(file)["scene_hash"][:12]
+
+
 def history(folder):
     with open(os.path.join(folder, "history.csv")) as file:
         rows = list(csv.DictReader(file))
@@ -189,6 +201,7 @@ def save(figure, path, dpi):
     from PIL import Image
 
     figure.tight_layout()
+    stamp(figure)
     figure.savefig(path, dpi=dpi)
     Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)
 
@@ -203,6 +216,7 @@ def main():
     labels = args.label or [os.path.basename(os.path.normpath(run)) for run in args.runs]
     if len(labels) != len(args.runs):
         parser.error(f"{len(args.runs)} runs, but {len(labels)} labels")
+    SCENES.extend(scene(run) for run in args.runs)
     runs = [describe(*named) for named in zip(args.runs, labels)]
     draw_penetration(runs, os.path.join(args.to, "penetration.png"))
     draw_ground(args.runs[0], PERIOD, os.path.join(args.to, "ground.png"))

@@ -10,6 +10,7 @@ energy and craters of all runs, and the section at the end and a film strip of t
 
 import argparse
 import csv
+import json
 import os
 
 os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
@@ -27,6 +28,18 @@ PLACE = 3.5  # y of the strip that is told for every run, m
 STRIP = 1.0  # width of the strips whose soil is followed, m
 SQUARE = 0.5  # side of the squares in which the surface is sought, m
 GREATEST = 10.0  # displacement at the end of the colours, m
+
+
+SCENES = []  # fingerprints of the runs' scenes, which stand small in every picture
+
+
+def stamp(figure):
+    figure.text(0.004, 0.004, "scene " + ", ".join(SCENES), fontsize=4, color="0.5")
+
+
+def scene(folder):
+    with open(os.path.join(folder, "summary.json")) as file:
+        return json.load(file)["scene_hash"][:12]
 
 
 def history(folder):
@@ -194,6 +207,7 @@ def save(figure, path, dpi):
     from PIL import Image
 
     figure.tight_layout()
+    stamp(figure)
     figure.savefig(path, dpi=dpi)
     Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)
 
@@ -208,6 +222,7 @@ def main():
     labels = args.label or [os.path.basename(os.path.normpath(run)) for run in args.runs]
     if len(labels) != len(args.runs):
         parser.error(f"{len(args.runs)} runs, but {len(labels)} labels")
+    SCENES.extend(scene(run) for run in args.runs)
     runs = [describe(*named) for named in zip(args.runs, labels)]
     draw_energy(runs, os.path.join(args.to, "energy.png"))
     draw_troughs(runs, os.path.join(args.to, "trough.png"))

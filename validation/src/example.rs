@@ -1,9 +1,11 @@
 //! The absorbing-column example: its exact histories and its plots.
 
 use crate::exact::column::{Bottom, Column, ColumnSolution};
-use crate::plot::Plot;
+use crate::report::look;
 use crate::setup::{self, Balance};
 use moldwarp::Simulation;
+use moldwarp_io::output::hash::scene_hash;
+use moldwarp_io::plot::Plot;
 use moldwarp_io::scene;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -64,60 +66,32 @@ pub fn exact_history(bottom: Bottom) -> String {
 
 /// Histories of a scene: time, bottom's displacement, bottom's pressure.
 struct Run {
-    label: &'static str,
     exact: ColumnSolution,
     points: Vec<[f64; 3]>,
+    /// The scene's fingerprint.
+    hash: String,
 }
 
-/// Runs the three scenes and draws the bottom's displacement and stress over time beside the
-/// scenes. Returns the files.
-pub fn draw() -> Result<Vec<PathBuf>, Failure> {
-    let runs: Vec<Run> = SCENES
-        .iter()
-        .map(|s| Ok(run(s)?.0))
-        .collect::<Result<_, Failure>>()?;
-    let mut displacement = Plot::new(
-        "Bottom of the layer on dashpots, with and without springs",
-        "time (s)",
-        "downward displacement (mm)",
-    );
-    for run in runs.iter().filter(|r| r.label != "rigid") {
-        displacement.line(
-            run.label,
-            run.points.iter().map(|p| (p[0], 1e3 * p[1])).collect(),
-        );
-        let exact = |t: f64| 1e3 * run.exact.bottom_displacement(t);
-        displacement.dashed(format!("{}, exact", run.label), curve(exact));
-    }
-    // Past this the dashpot's creep leaves the picture.
-    for curve in &mut displacement.curves {
-        curve.points.retain(|p| p.1 < 12.0);
-    }
-    let mut files = vec![("displacement.svg", displacement)];
-    for (file, run) in [
-        "stress-spring.svg",
-        "stress-dashpot.svg",
-        "stress-rigid.svg",
-    ]
-    .iter()
-    .zip(&runs)
-    {
-        let title = format!("Pressure at the bottom: {}", run.label);
-        let mut stress = Plot::new(&title, "time (s)", "pressure (kPa)");
-        stress.line(
-            "moldwarp",
-            run.points.iter().map(|p| (p[0], 1e-3 * p[2])).collect(),
-        );
-        stress.dashed("exact", curve(|t| 1e-3 * run.exact.bottom_pressure(t)));
-        files.push((file, stress));
-    }
-    let mut written = Vec::new();
-    for (file, plot) in files {
-        let path = folder().join(file);
-        std::fs::write(&path, plot.svg())?;
-        written.push(path);
-    }
-    Ok(written)
+/// Runs a scene and draws the pressure at the bottom over time beside the exact one.
+///
+/// # Errors
+///
+/// If there is no such scene, or the file cannot be written.
+pub fn draw_stress(file: &str, to: &Path) -> Result<(), Failure> {
+    let scene = SCENES.iter().find(|s| s.0 == file);
+    let scene = scene.ok_or_else(|| format!("there is no exact solution of {file}"))?;
+    let (run, _) = run(scene)?;
+    let title = format!("Pressure at the bottom: {}", scene.1);
+    let mut stress = Plot {
+        look: look(),
+        caption: format!("scene {}", &run.hash[..12]),
+        ..Plot::new(&title, "time (s)", "pressure (kPa)")
+    };
+    let points = run.points.iter().map(|p| (p[0], 1e-3 * p[2]));
+    stress.line("moldwarp", points.collect());
+    stress.dashed("exact", curve(|t| 1e-3 * run.exact.bottom_pressure(t)));
+    stress.write(to)?;
+    Ok(())
 }
 
 fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
@@ -127,10 +101,9 @@ fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn run(
-    &(file, label, bottom, _): &(&str, &'static str, Bottom, &str),
-) -> Result<(Run, Balance), Failure> {
+fn run(&(file, _, bottom, _): &(&str, &str, Bottom, &str)) -> Result<(Run, Balance), Failure> {
     let scene = scene::load(&folder().join(file), &[])?;
+    let hash = scene_hash(&scene.plan);
     let mut points = Vec::new();
     let balance = setup::run(scene.plan, |s: &Simulation| {
         let value = |column: &str| -setup::value(s, column);
@@ -141,7 +114,7 @@ fn run(
         ]);
     });
     let run = Run {
-        label,
+        hash,
         exact: Column::of_the_paper(bottom).solve(END),
         points,
     };

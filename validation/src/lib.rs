@@ -7,13 +7,13 @@ pub mod cases;
 pub mod exact;
 pub mod example;
 pub mod ledgers;
-mod plot;
+pub mod pictures;
 mod report;
 pub mod setup;
 pub mod soak;
 pub mod speed;
 
-pub use plot::{Curve, Plot};
+pub use moldwarp_io::plot::{Curve, Plot};
 pub use report::{Check, Report, Table};
 
 /// How finely a case is computed.

@@ -1,9 +1,9 @@
 //! `moldwarp-validation coarse|fine [CASE]`: computes the cases and writes their tables and plots.
-//! `exact` writes the exact histories of the examples, `pictures` draws the examples' plots, `speed`
-//! measures the step, `ledgers [coarse|fine] [NAME]…` tabulates the ledgers of cases and examples, `soak`
+//! `exact` writes the exact histories of the examples, `pictures [--out DIR] [NAME]…` makes the pictures of
+//! README, examples and book, `speed` measures the step, `ledgers [coarse|fine] [NAME]…` tabulates the ledgers of cases and examples, `soak`
 //! runs an example over and over.
 
-use moldwarp_validation::{Fidelity, cases, example, ledgers, soak, speed};
+use moldwarp_validation::{Fidelity, cases, example, ledgers, pictures, soak, speed};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -17,7 +17,7 @@ fn main() -> ExitCode {
         Some("speed") => return finished(speed::measure(&arguments[1..])),
         Some("soak") => return finished(soak::soak(&arguments[1..])),
         Some("ledgers") => return tabulated(ledgers::tabulate(&arguments[1..])),
-        Some("pictures") => return written(example::draw()),
+        Some("pictures") => return tabulated(pictures::make(&arguments[1..])),
         _ => return usage(),
     };
     let chosen: Vec<_> = match arguments.get(1) {
@@ -74,7 +74,7 @@ fn finished(result: Result<(), Box<dyn std::error::Error>>) -> ExitCode {
     }
 }
 
-/// Code 1 if a ledger is over a limit.
+/// Code 1 if a ledger is over a limit, or a picture could not be made.
 fn tabulated(result: Result<bool, Box<dyn std::error::Error>>) -> ExitCode {
     match result {
         Ok(false) => ExitCode::FAILURE,
@@ -85,7 +85,7 @@ fn tabulated(result: Result<bool, Box<dyn std::error::Error>>) -> ExitCode {
 fn usage() -> ExitCode {
     eprintln!(
         "usage: moldwarp-validation coarse|fine [CASE] | ledgers [coarse|fine] [NAME]… | exact | \
-         pictures | speed [BENCH]… | soak [RUNS [EXAMPLE]]\ncases:"
+         pictures [--out DIR] [NAME]… | speed [BENCH]… | soak [RUNS [EXAMPLE]]\ncases:"
     );
     for case in &cases::ALL {
         eprintln!("  {:18} {}", case.name, case.title);

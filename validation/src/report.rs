@@ -1,6 +1,6 @@
 //! What a case brings: a table, plots, and figures with limits.
 
-use crate::plot::Plot;
+use moldwarp_io::plot::{Look, Plot};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -15,6 +15,15 @@ pub struct Check {
 impl Check {
     pub fn passed(&self) -> bool {
         self.value <= self.limit
+    }
+}
+
+/// Plots are for screens, where they are shown as wide as a page's text.
+pub fn look() -> Look {
+    Look {
+        size: [18.0, 10.0],
+        font_size: 10.0,
+        ..Look::default()
     }
 }
 
@@ -102,7 +111,14 @@ impl Report {
         }
         std::fs::write(folder.join(format!("{case}-checks.csv")), checks.csv())?;
         for (name, plot) in &self.plots {
-            std::fs::write(folder.join(format!("{name}.svg")), plot.svg())?;
+            let look = look();
+            let svg = Plot {
+                look,
+                ..plot.clone()
+            }
+            .svg()
+            .map_err(std::io::Error::other)?;
+            std::fs::write(folder.join(format!("{name}.svg")), svg)?;
         }
         Ok(())
     }

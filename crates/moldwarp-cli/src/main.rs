@@ -3,7 +3,10 @@
 mod args;
 mod check;
 mod exit;
+mod inspect;
+mod manual;
 mod new;
+mod plot;
 mod progress;
 mod report;
 mod resume;
@@ -27,6 +30,10 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::sweep(&args),
         Command::SweepPart(args) => return sweep::part(&args),
         Command::New(args) => new::new(&args),
+        Command::Inspect(args) => inspect::inspect(&args),
+        Command::Plot(args) => plot::plot(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man(args) => manual::man(&args),
     };
     match done {
         Ok(exit) => exit.into(),

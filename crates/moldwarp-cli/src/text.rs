@@ -42,6 +42,22 @@ pub fn rate(x: f64) -> String {
     }
 }
 
+/// Rows as lines with their cells under each other: the first `left` columns begin at the left, the others
+/// are figures.
+pub fn table<const N: usize>(rows: &[[String; N]], left: usize) -> Vec<String> {
+    let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max();
+    let widths: Vec<usize> = (0..N).map(|at| width(at).unwrap_or(0)).collect();
+    let cell = |at: usize, text: &String| match at < left {
+        true => format!("{text:<0$}", widths[at]),
+        false => format!("{text:>0$}", widths[at]),
+    };
+    let line = |row: &[String; N]| {
+        let cells: Vec<String> = (0..N).map(|at| cell(at, &row[at])).collect();
+        cells.join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,5 +69,11 @@ mod tests {
         assert_eq!(t, ["250 ms", "12.0 s", "10 min", "2.0 h", "3.0 days"]);
         assert_eq!([512.0, 2.5e6, 3e9].map(bytes), ["512 B", "2 MB", "3.0 GB"]);
         assert_eq!([512.0, 2.5e6].map(rate), ["512", "2.50 M"]);
+    }
+
+    #[test]
+    fn cells_stand_under_each_other() {
+        let rows = [["a", "m", "1.5"], ["Δbc", "", "-20"]].map(|row| row.map(str::to_owned));
+        assert_eq!(table(&rows, 2), ["a    m  1.5", "Δbc     -20"]);
     }
 }

@@ -3,8 +3,10 @@
 pub mod check;
 pub mod mesh;
 pub mod output;
+pub mod plot;
 #[cfg(test)]
 mod reference;
+pub mod results;
 pub mod run;
 pub mod scene;
 pub mod sweep;

@@ -97,7 +97,7 @@ fn compute(name: &str, fidelity: Fidelity) -> Result<Vec<Entry>, Failure> {
 }
 
 /// The commit that is computed, with a `+` if what decides the results has been changed since.
-fn commit() -> String {
+pub(crate) fn commit() -> String {
     let git = |arguments: &[&str]| {
         let mut git = Command::new("git");
         git.current_dir(root()).args(arguments).output().ok()

@@ -185,7 +185,18 @@ pub enum CsvError {
 /// Reads a table: a header row, then numbers. Empty lines and lines that begin with `#` are
 /// passed over.
 pub fn read(path: &Path) -> Result<Table, CsvError> {
-    let records = read_text(path)?;
+    numbers(read_text(path)?, path)
+}
+
+/// The same of a table that may still be written, or was when its program ended: a last line without
+/// its end is not there yet.
+pub fn read_growing(path: &Path) -> Result<Table, CsvError> {
+    let text = std::fs::read_to_string(path).map_err(FileError::at("read", path))?;
+    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+    numbers(records(whole, path)?, path)
+}
+
+fn numbers(records: Records, path: &Path) -> Result<Table, CsvError> {
     let mut columns = vec![Vec::new(); records.names.len()];
     for (row, &line) in records.rows.iter().zip(&records.lines) {
         for (column, cell) in columns.iter_mut().zip(row) {
@@ -205,6 +216,10 @@ pub fn read(path: &Path) -> Result<Table, CsvError> {
 /// The same of a table that may hold text. No cell goes over several lines.
 pub fn read_text(path: &Path) -> Result<Records, CsvError> {
     let text = std::fs::read_to_string(path).map_err(FileError::at("read", path))?;
+    records(&text, path)
+}
+
+fn records(text: &str, path: &Path) -> Result<Records, CsvError> {
     let path = || path.to_owned();
     let mut lines = text
         .trim_start_matches('\u{feff}')
@@ -284,6 +299,16 @@ mod tests {
         assert!(read[6].is_nan());
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.contains("0,0.30000000000000004\n1,-1e-300\n2,1e22\n3,12\n"));
+    }
+
+    #[test]
+    fn a_row_that_is_being_written_is_not_there_yet() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("x.csv");
+        for cut in ["2", "2,", "2,0.", "2,0.5"] {
+            std::fs::write(&path, format!("time,value\n0,1\n{cut}")).unwrap();
+            assert_eq!(read_growing(&path).unwrap().columns, [[0.0], [1.0]]);
+        }
     }
 
     #[test]

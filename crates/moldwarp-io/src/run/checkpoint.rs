@@ -293,6 +293,37 @@ impl Checkpoint {
     }
 }
 
+/// What a checkpoint is of.
+#[derive(Clone, Debug)]
+pub(crate) struct Facts {
+    pub generation: u64,
+    /// s.
+    pub time: f64,
+    pub step: u64,
+    pub stages_over: usize,
+    pub case: String,
+    pub version: String,
+    pub scene_hash: String,
+    /// s.
+    pub wall_time: f64,
+}
+
+/// What a checkpoint's bytes are of; nothing is set up.
+pub(crate) fn facts(bytes: Vec<u8>) -> Result<Facts, CheckpointError> {
+    let checkpoint = Checkpoint::of(bytes)?;
+    let (time, step) = moldwarp::saved::instant(|name| checkpoint.section(name))?;
+    Ok(Facts {
+        time,
+        step,
+        generation: checkpoint.generation,
+        stages_over: checkpoint.stage,
+        wall_time: checkpoint.course.earlier,
+        case: checkpoint.beginning.case,
+        version: checkpoint.beginning.version,
+        scene_hash: checkpoint.beginning.scene_hash,
+    })
+}
+
 enum Unread {
     Damage(Damage),
     Broken(Broken),

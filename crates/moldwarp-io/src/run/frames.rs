@@ -212,6 +212,16 @@ pub(crate) const NODE_FIELDS: [Field<OfNodes>; 3] = [
     },
 ];
 
+/// The unit of a field of the frames by its name, with its sign convention; none if it has none, or is a
+/// model's.
+pub(crate) fn unit(field: &str) -> Option<&'static str> {
+    let of_particles = PARTICLE_FIELDS.iter().map(|f| (f.name, f.label));
+    let mut all = of_particles.chain(NODE_FIELDS.iter().map(|f| (f.name, f.label)));
+    all.find(|f| f.0 == field)
+        .map(|f| f.1)
+        .filter(|unit| !unit.is_empty())
+}
+
 /// Writes the fields above, those of the models, and `more`.
 pub(super) fn write_particles(
     sim: &Simulation,

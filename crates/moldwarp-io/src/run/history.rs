@@ -8,6 +8,7 @@ use crate::output::{FileError, Folder};
 use crate::scene::Compare;
 use moldwarp::Simulation;
 use moldwarp::measure::Energies;
+use moldwarp::plan::{Contact, Quantity};
 
 /// A column that every history has. The book's page on the output is made from these, too.
 pub(crate) struct Column {
@@ -52,6 +53,35 @@ pub(crate) const FIRST: [Column; 5] = [
         value: Simulation::time_step,
     },
 ];
+
+/// The unit of a column by its name, as runs before their end have no summary that says it; none if no
+/// history has such a column.
+pub(crate) fn unit(column: &str) -> Option<&'static str> {
+    if let Some(first) = FIRST.iter().find(|c| c.name == column) {
+        return Some(first.unit);
+    }
+    if column.starts_with("energy.") {
+        return Some("J");
+    }
+    if let Some(rest) = column.strip_prefix("contact.") {
+        let of_contact = Contact::COLUMNS.iter();
+        let mut found =
+            of_contact.filter(|c| rest.strip_suffix(c.0).is_some_and(|r| r.ends_with('.')));
+        if let Some(column) = found.next() {
+            return Some(column.1);
+        }
+    }
+    let quantity = |part: &str| {
+        Quantity::ALL
+            .iter()
+            .find(|q| q.0 == part)
+            .map(|q| q.1.unit())
+    };
+    let mut parts = column.rsplit('.');
+    // `probe.penetration` or `probe.displacement.z`.
+    let (last, before) = (parts.next()?, parts.next()?);
+    quantity(last).or_else(|| quantity(before))
+}
 
 /// A history's columns with their units, in order.
 pub(crate) fn columns(sim: &Simulation) -> Vec<(String, String)> {

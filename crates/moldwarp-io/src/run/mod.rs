@@ -19,13 +19,13 @@ pub use interrupt::Interrupt;
 pub use resume::{read_checkpoint, resume};
 pub use state::state_hash;
 
-pub(crate) use checkpoint::checkpoint_bytes;
-pub(crate) use frames::frame_bytes;
+pub(crate) use checkpoint::{checkpoint_bytes, facts as checkpoint_facts};
 #[cfg(test)]
 pub(crate) use frames::{Field, NODE_FIELDS, OfParticles, PARTICLE_FIELDS};
+pub(crate) use frames::{frame_bytes, unit as unit_of_field};
 #[cfg(test)]
 pub(crate) use history::FIRST;
-pub(crate) use history::{Expected, columns};
+pub(crate) use history::{Expected, columns, unit as unit_of_column};
 pub(crate) use stage_files::StageFile;
 pub(crate) use steps::end_time;
 pub(crate) use whole::factor as whole_factor;
@@ -61,8 +61,14 @@ pub struct RunOptions {
 }
 
 /// How far a run is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Progress {
+    /// Name of the stage that goes on, its number from 0, and how many there are.
+    pub stage: String,
+    pub stage_number: usize,
+    pub stages: usize,
+    /// Whether a stage that goes on or is to come may end earlier, in equilibrium.
+    pub may_end_earlier: bool,
     /// Simulated time, s.
     pub time: f64,
     /// When it will end, s; an estimate where a stage is given in steps.
@@ -72,6 +78,11 @@ pub struct Progress {
     pub time_step: f64,
     /// Particles times steps per second of the step loop.
     pub rate: f64,
+    /// Kinetic energy of the particles, J, of the whole body.
+    pub kinetic: f64,
+    /// |Residual| and the numerical terms over the energy turned over; 0 before there is any.
+    pub residual: f64,
+    pub numerical: f64,
     /// Wall time since the loop's start, with that of earlier parts of a run that was resumed.
     pub elapsed: Duration,
 }

@@ -135,18 +135,42 @@ pub(super) fn steps(
         sim.wrote_output();
         if now - shown >= PROGRESS_INTERVAL {
             shown = now;
-            observer.progress(&Progress {
-                time: sim.time(),
-                end: end_time(sim),
-                step: sim.steps(),
-                time_step: sim.time_step(),
-                rate: books.course.pace.rate(),
-                elapsed: earlier + (now - start),
-            });
+            observer.progress(&progress(sim, &books.course.pace, earlier + (now - start)));
         }
     }
     books.recorder.record_last(sim)?;
     Ok(Ended::Done)
+}
+
+fn progress(sim: &Simulation, pace: &Pace, elapsed: Duration) -> Progress {
+    let stages = &sim.plan().stages;
+    let number = sim.stage().min(stages.len() - 1);
+    let energies = sim.energies();
+    let turned_over = sim.energy_turned_over();
+    let share = |energy: f64| {
+        if turned_over > 0.0 {
+            energy / turned_over
+        } else {
+            0.0
+        }
+    };
+    let until_rest =
+        |stage: &moldwarp::plan::Stage| matches!(stage.until, Until::Equilibrium { .. });
+    Progress {
+        stage: stages[number].name.clone(),
+        stage_number: number,
+        stages: stages.len(),
+        may_end_earlier: stages[number..].iter().any(until_rest),
+        time: sim.time(),
+        end: end_time(sim),
+        step: sim.steps(),
+        time_step: sim.time_step(),
+        rate: pace.rate(),
+        kinetic: super::whole::energies(sim).kinetic,
+        residual: share(energies.residual.abs()),
+        numerical: share(energies.numerical()),
+        elapsed,
+    }
 }
 
 /// When the run will end, s; stages given in steps are taken to go on with the coming step.

@@ -28,7 +28,7 @@ mod probes;
 mod quantity;
 mod raw;
 mod stages;
-mod suggest;
+pub(crate) mod suggest;
 mod surfaces;
 mod symmetry;
 mod syntax;

@@ -24,7 +24,7 @@ fn distance(a: &str, b: &str) -> usize {
 const LONGEST: usize = 200;
 
 /// The name most like `wrong`, if one is like it at all. Case, `-` and `_` do not matter.
-pub(super) fn nearest<'a>(
+pub(crate) fn nearest<'a>(
     wrong: &str,
     names: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
@@ -45,7 +45,7 @@ pub(super) fn nearest<'a>(
 }
 
 /// "did you mean …?" if something is near, and the names there are.
-pub(super) fn help<'a>(
+pub(crate) fn help<'a>(
     wrong: &str,
     what: &str,
     names: impl IntoIterator<Item = &'a str> + Clone,
@@ -59,7 +59,7 @@ pub(super) fn help<'a>(
 }
 
 /// `a`, `b`, `c`; no more than twenty of them.
-pub(super) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.into_iter().map(|n| format!("`{n}`")).collect();
     match names.get(20..) {
         Some(rest) if !rest.is_empty() => {

@@ -97,6 +97,42 @@ fn look(path: &Path) -> Result<Earlier, FileError> {
     })
 }
 
+/// A run of a sweep, as the table has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    pub folder: PathBuf,
+    /// Paths of the scene and the values that they had.
+    pub values: Vec<(String, String)>,
+    /// None if it has not ended, or not begun.
+    pub exit_code: Option<i32>,
+    /// Why it did not come to its end; empty if it did.
+    pub reason: String,
+    /// s.
+    pub wall_time: Option<f64>,
+}
+
+/// The runs of the sweep in a folder, in the order of its table; none if it holds no sweep.
+pub fn members(path: &Path) -> Option<Vec<Member>> {
+    let table = csv::read_text(&path.join(TABLE)).ok()?;
+    let (folders, _) = runs(&path.join(TABLE))?;
+    let ends = table.names.iter().position(|n| n == EXIT_CODE)?;
+    let varied = table.names.get(FIRST.len()..ends)?;
+    let cell = |row: &[String], at: usize| row.get(at).cloned().unwrap_or_default();
+    let member = |row: &Vec<String>| Member {
+        folder: path.join(cell(row, 1)),
+        values: varied
+            .iter()
+            .cloned()
+            .zip(row[FIRST.len()..ends].iter().cloned())
+            .collect(),
+        exit_code: cell(row, ends).parse().ok(),
+        reason: cell(row, ends + 1),
+        wall_time: cell(row, ends + 2).parse().ok(),
+    };
+    let within = |row: &&Vec<String>| folders.contains(&cell(row, 1));
+    Some(table.rows.iter().filter(within).map(member).collect())
+}
+
 /// The folders of the runs that a table lists, and whether one of them has not ended. None if
 /// there is no table of a sweep.
 fn runs(table: &Path) -> Option<(Vec<String>, bool)> {

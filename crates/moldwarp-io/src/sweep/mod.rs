@@ -5,7 +5,7 @@ mod names;
 mod table;
 mod values;
 
-pub use folder::SweepFolder;
+pub use folder::{Member, SweepFolder, members};
 pub use table::{End, Table, extremes};
 pub use values::Variation;
 

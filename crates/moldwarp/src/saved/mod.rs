@@ -14,6 +14,7 @@ mod values;
 
 pub use out::{Out, Part, Section, to_bytes};
 pub(crate) use values::{list_size, save_list};
+pub use simulation::instant;
 
 /// Something that can be written as bytes and read back, equal bit for bit.
 pub trait Saved: Sized {

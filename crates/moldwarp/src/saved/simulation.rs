@@ -12,6 +12,17 @@ use crate::simulation::Simulation;
 use crate::stages::moduli;
 use crate::step::{Active, Cells, Guests, Node, Shared};
 
+/// Time in s and number of steps of a state that [`Simulation::save`] has handed out.
+///
+/// # Errors
+///
+/// If there is no such section.
+pub fn instant<'a>(section: impl Fn(&str) -> Option<&'a [u8]>) -> Result<(f64, u64), Broken> {
+    let clock = section("clock").ok_or_else(|| Broken::new("clock"))?;
+    let clock: crate::simulation::Clock = load(clock)?;
+    Ok((clock.time, clock.steps))
+}
+
 impl Simulation {
     /// Hands out everything that the simulation needs to go on, in sections with names; the plan is
     /// not among it.

@@ -3,9 +3,9 @@
 mod args;
 mod check;
 mod exit;
+mod failure;
 mod new;
 mod progress;
-mod report;
 mod resume;
 mod run;
 mod signals;
@@ -19,7 +19,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    report::install();
+    failure::install();
     let done = match Args::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => resume::resume(&args),

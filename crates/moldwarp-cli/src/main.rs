@@ -6,6 +6,7 @@ mod exit;
 mod failure;
 mod new;
 mod progress;
+mod report;
 mod resume;
 mod run;
 mod signals;
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::check(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::SweepPart(args) => return sweep::part(&args),
+        Command::Report(args) => report::report(&args),
         Command::New(args) => new::new(&args),
     };
     match done {
@@ -60,6 +62,12 @@ impl Failure {
     /// Wrong input or arguments.
     fn input(report: impl Into<miette::Report>) -> Failure {
         Failure::new(Exit::Input, report)
+    }
+}
+
+impl From<moldwarp_io::report::ReportError> for Failure {
+    fn from(error: moldwarp_io::report::ReportError) -> Failure {
+        Failure::input(error)
     }
 }
 

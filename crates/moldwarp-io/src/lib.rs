@@ -5,6 +5,7 @@ pub mod mesh;
 pub mod output;
 #[cfg(test)]
 mod reference;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod sweep;

@@ -185,7 +185,15 @@ pub enum CsvError {
 /// Reads a table: a header row, then numbers. Empty lines and lines that begin with `#` are
 /// passed over.
 pub fn read(path: &Path) -> Result<Table, CsvError> {
-    let records = read_text(path)?;
+    numbers(read_text(path)?, path)
+}
+
+/// The same of the text of a file; `path` is for messages.
+pub fn parse(text: &str, path: &Path) -> Result<Table, CsvError> {
+    numbers(records(text, path)?, path)
+}
+
+fn numbers(records: Records, path: &Path) -> Result<Table, CsvError> {
     let mut columns = vec![Vec::new(); records.names.len()];
     for (row, &line) in records.rows.iter().zip(&records.lines) {
         for (column, cell) in columns.iter_mut().zip(row) {
@@ -205,6 +213,10 @@ pub fn read(path: &Path) -> Result<Table, CsvError> {
 /// The same of a table that may hold text. No cell goes over several lines.
 pub fn read_text(path: &Path) -> Result<Records, CsvError> {
     let text = std::fs::read_to_string(path).map_err(FileError::at("read", path))?;
+    records(&text, path)
+}
+
+fn records(text: &str, path: &Path) -> Result<Records, CsvError> {
     let path = || path.to_owned();
     let mut lines = text
         .trim_start_matches('\u{feff}')

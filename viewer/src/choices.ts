@@ -18,7 +18,7 @@ export interface Choice {
   /** Over all frames and particles, in SI units. */
   overall: Bounds;
   scale: Scale;
-  /** Whether values of both signs occur and zero is what they are measured from. */
+  /** Whether values of both signs are common, so that zero is what they are measured from. */
   signed: boolean;
 }
 
@@ -45,7 +45,7 @@ export function choices(pictures: Pictures): Choice[] {
         kinds,
         overall,
         scale: scale(size, field.unit),
-        signed: overall[0] < 0 && overall[1] > 0 && !whole && !kinds,
+        signed: Math.min(-overall[2], overall[3]) > 0.1 * Math.max(-overall[2], overall[3]) && !whole && !kinds,
       };
     });
   });

@@ -99,6 +99,12 @@ export class Plot {
     return this.data.length - 1;
   }
 
+  /** From when to when it is shown, s. */
+  get shown(): [number, number] {
+    const { min, max } = this.chart!.scales["x"]!;
+    return [min!, max!];
+  }
+
   /** Draws it, or draws it anew in other colours or of another width. */
   draw(): void {
     this.chart?.destroy();

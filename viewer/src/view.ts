@@ -7,10 +7,12 @@ import { bytes, half, Store, type About, type Frame, type Pictures } from "./dat
 import { button, labelled, make, menu, save, style } from "./dom";
 import { edges } from "./edges";
 import { number } from "./format";
-import { ofKinds, ofRange } from "./legend";
+import { Graphics } from "./graphics";
 import { attach } from "./input";
+import { ofKinds, ofRange } from "./legend";
+import type { Renderer } from "./picture";
 import { readout, type Picked } from "./readout";
-import { Renderer } from "./renderer";
+import { bySoftware, Software } from "./software";
 import { apply, copies, direction, dot, length, sub, times, type Extent, type V3 } from "./space";
 
 /** More copies of particles are not drawn unless they are asked for. */
@@ -24,6 +26,7 @@ export class View {
   /** Called when another frame is shown. */
   changed: () => void = () => {};
   private readonly renderer: Renderer;
+  private readonly software: boolean;
   private readonly camera: Camera;
   private readonly canvas = make("canvas", { tabindex: "0", role: "img" });
   private readonly legend = make("div", { class: "legend", "aria-live": "polite" });
@@ -50,7 +53,7 @@ export class View {
   private edges = 0.12;
   private outline = true;
   private magnified = 1;
-  private blown = 1;
+  private blown = 0.85;
   private clipAxis: number | null = null;
   private clipAt = CLIPS / 2;
   private clipOther = false;
@@ -60,7 +63,8 @@ export class View {
   private loading = Promise.resolve();
 
   private constructor(private readonly run: About, private readonly pictures: Pictures) {
-    this.renderer = new Renderer(this.canvas);
+    this.software = bySoftware();
+    this.renderer = this.software ? new Software(this.canvas) : new Graphics(this.canvas);
     this.camera = new Camera(run.up as V3);
     this.all = choices(pictures);
     this.choice = this.all[0]!;
@@ -241,7 +245,7 @@ export class View {
     const extremes = greatest - least > 2.5 * (high - low) && high > low;
     if (this.rangeKind !== "frame") this.rangeKind = extremes ? "inner" : "all";
     this.rangeMenu.value = this.rangeKind;
-    for (const control of [this.rangeMenu, this.lowest, this.highest]) control.disabled = choice.kinds;
+    for (const control of [this.rangeMenu, this.lowest, this.highest]) control.parentElement!.hidden = choice.kinds;
     await this.loadFrame();
   }
 
@@ -375,7 +379,8 @@ export class View {
   }
 
   private resize(): void {
-    const ratio = Math.min(devicePixelRatio || 1, 2);
+    // More pixels cost the processor more than they are worth.
+    const ratio = Math.min(devicePixelRatio || 1, this.software ? 1 : 2);
     this.canvas.width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     this.canvas.height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     this.redraw();
@@ -680,7 +685,7 @@ export class View {
         this.redraw();
       },
     );
-    const blown = menu("blown", "Size of particles", [["1", "full"], ["0.6", "smaller"], ["0.3", "dots"], ["1.4", "larger"]], (value) => {
+    const blown = menu("blown", "Size of particles", [["0.85", "full"], ["0.5", "smaller"], ["0.25", "dots"], ["1.2", "larger"]], (value) => {
       this.blown = Number(value);
       this.redraw();
     });
@@ -688,8 +693,9 @@ export class View {
   }
 
   /** For tests: what is shown. */
-  get state(): { field: string; frame: number; frames: number; count: number; copies: number; picked: number | null } {
+  get state() {
     return {
+      software: this.software,
       field: this.choice.key,
       frame: this.frame,
       frames: this.pictures.frames.length,

@@ -23,18 +23,18 @@ export function launch() {
 }
 
 /** Opens a report. `said` collects errors and requests of any other place than the file itself. */
-export async function open(browser, file, { width = 1280, height = 800, dark = false, scale = 1 } = {}) {
+export async function open(browser, file, { width = 1280, height = 800, dark = false, hash = "" } = {}) {
   const page = await browser.newPage();
   const said = [];
   page.on("console", (message) => message.type() === "error" && said.push(`console: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));
   page.on("request", (request) => {
-    const own = request.url() === `file://${file}` || /^(data|blob):/.test(request.url());
+    const own = request.url() === `file://${file}${hash}` || /^(data|blob):/.test(request.url());
     if (!own) said.push(`request: ${request.url()}`);
   });
-  await page.setViewport({ width, height, deviceScaleFactor: scale });
+  await page.setViewport({ width, height, deviceScaleFactor: 1 });
   await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }]);
-  await page.goto(`file://${file}`);
+  await page.goto(`file://${file}${hash}`);
   await page.waitForFunction("window.moldwarp && window.moldwarp.ready", { timeout: 60_000 });
   return { page, said };
 }

@@ -9,6 +9,9 @@ use serde_json::{Value, json};
 /// A body is at rest when its kinetic energy is below this part of its peak.
 const AT_REST: f64 = 0.01;
 
+/// A rest that is shorter than this part of the run may be none.
+const SHORT: f64 = 0.05;
+
 /// A question with its answer, as HTML.
 #[derive(Debug)]
 pub struct Answer {
@@ -22,13 +25,14 @@ pub struct Answer {
     pub show: Option<(&'static str, Value)>,
 }
 
-pub fn answers(source: &Source, survey: &Survey) -> Vec<Answer> {
+/// `edges` are the least, the median and the greatest length of the elements' edges, m.
+pub fn answers(source: &Source, survey: &Survey, edges: Option<[f64; 3]>) -> Vec<Answer> {
     vec![
         how_far(source, survey),
         when_at_rest(source),
         where_yielded(source, survey),
         greatest_force(source),
-        trust(source, survey),
+        trust(source, survey, edges),
     ]
 }
 
@@ -65,20 +69,35 @@ fn how_far(source: &Source, survey: &Survey) -> Answer {
             json!({ "field": "displacement", "part": 0, "frame": frame, "id": range.at[1] }),
         ));
     }
-    let names = &source.history.names;
-    let wanted = |name: &&String| name.ends_with(".penetration") || name.contains(".displacement");
-    for name in names.iter().filter(wanted).take(6) {
-        let last = source.history.column(name).and_then(|c| c.last());
-        if let Some(&last) = last {
-            if answer.show.is_none() && more.is_empty() {
-                answer.short = figure(last, "m");
-            }
-            let (name, value) = (escape(name), figure(last, "m"));
-            more.push(format!("<code>{name}</code> at the end: {value}."));
+    for (name, last) in ways(source).into_iter().take(6) {
+        if answer.show.is_none() && more.is_empty() {
+            answer.short = figure(last, "m");
         }
+        let (name, last) = (escape(&name), figure(last, "m"));
+        more.push(format!("<code>{name}</code> at the end: {last}."));
     }
     answer.more = more;
     answer
+}
+
+/// The last displacements of probes, as lengths, and penetrations.
+fn ways(source: &Source) -> Vec<(String, f64)> {
+    let last = |name: &str| source.history.column(name)?.last().copied();
+    let names = source.history.names.iter();
+    let way = |name: &String| {
+        if name.ends_with(".penetration") {
+            return Some((name.clone(), last(name)?));
+        }
+        let name = name
+            .strip_suffix(".x")
+            .filter(|n| n.ends_with(".displacement"))?;
+        let parts = ["x", "y", "z"].map(|c| last(&format!("{name}.{c}")));
+        let squares = parts
+            .into_iter()
+            .try_fold(0.0, |sum, c| Some(sum + c? * c?))?;
+        Some((name.to_owned(), f64::sqrt(squares)))
+    };
+    names.filter_map(way).collect()
 }
 
 fn body(source: &Source, number: usize) -> String {
@@ -137,17 +156,22 @@ fn when_at_rest(source: &Source) -> Answer {
     answer.show = Some(("Show the curve", json!({ "plot": "energy" })));
     (answer.short, answer.more) = match rest(times, energy) {
         Rest::Nothing => ("nothing moved".to_owned(), vec![judged]),
-        Rest::Since { time, peak_at } => (
-            at(time),
-            vec![
-                format!(
-                    "From then on the kinetic energy is below {} % of its peak, which was at t = {}.",
-                    100.0 * AT_REST,
-                    at(peak_at)
-                ),
-                judged,
-            ],
-        ),
+        Rest::Since { time, peak_at } => {
+            let mut more = vec![format!(
+                "From then on the kinetic energy is below {} % of its peak, which was at t = {}.",
+                100.0 * AT_REST,
+                at(peak_at)
+            )];
+            let end = times.last().copied().unwrap_or(time);
+            if end - time < SHORT * end {
+                more.push(format!(
+                    "The run ends soon after, at t = {}: whether it stays so, only a longer one tells.",
+                    at(end)
+                ));
+            }
+            more.push(judged);
+            (at(time), more)
+        }
         Rest::Moving { share, peak_at } => (
             "it did not".to_owned(),
             vec![
@@ -234,8 +258,10 @@ fn where_yielded(source: &Source, survey: &Survey) -> Answer {
 /// A force over time.
 #[derive(Debug, PartialEq)]
 struct Force {
-    /// Name of its columns without the component.
+    /// Of a contact, normal and tangential, or of a probe.
     name: String,
+    /// Whose curves show it.
+    plot: String,
     greatest: f64,
     time: f64,
     at_end: f64,
@@ -247,23 +273,39 @@ fn forces(source: &Source) -> Vec<Force> {
     let Some(times) = history.column("time") else {
         return Vec::new();
     };
-    let of_name = |name: &str| {
+    let vector = |name: &str| -> Option<Vec<[f64; 3]>> {
         let [x, y, z] = ["x", "y", "z"].map(|c| column(format!("{name}.{c}")));
         let (x, y, z) = (x?, y?, z?);
-        let size = |i: usize| (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
-        let all = (0..times.len()).map(|i| (size(i), times[i]));
-        let greatest = all
-            .filter(|f| f.0.is_finite())
-            .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        Some((0..times.len()).map(|i| [x[i], y[i], z[i]]).collect())
+    };
+    let force = |name: String, plot: String, vectors: &[[f64; 3]]| {
+        let size = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let all = vectors.iter().map(size).zip(times.iter().copied());
+        let all = all.filter(|f| f.0.is_finite());
+        let (greatest, time) = all.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         Some(Force {
-            name: name.to_owned(),
-            greatest: greatest.0,
-            time: greatest.1,
-            at_end: size(times.len() - 1),
+            name,
+            plot,
+            greatest,
+            time,
+            at_end: size(vectors.last()?),
         })
     };
     let names = history.names.iter().filter(|n| source.unit(n) == "N");
     let names = names.filter_map(|n| n.strip_suffix(".x"));
+    let of_name = |name: &str| match name.strip_suffix(".normal") {
+        // Normal and tangential forces of a contact together are what one side feels.
+        Some(contact) => {
+            let both = vector(name)?
+                .into_iter()
+                .zip(vector(&format!("{contact}.tangential"))?);
+            let both = both.map(|(n, t)| [n[0] + t[0], n[1] + t[1], n[2] + t[2]]);
+            let both: Vec<[f64; 3]> = both.collect();
+            force(contact.to_owned(), name.to_owned(), &both)
+        }
+        None if name.ends_with(".tangential") => None,
+        None => force(name.to_owned(), name.to_owned(), &vector(name)?),
+    };
     let mut forces: Vec<Force> = names.filter_map(of_name).collect();
     forces.sort_by(|a, b| b.greatest.total_cmp(&a.greatest));
     forces
@@ -303,7 +345,7 @@ fn greatest_force(source: &Source) -> Answer {
         question: "What was the greatest force?",
         short: figure(first.greatest, "N"),
         more,
-        show: Some(("Show the curve", json!({ "plot": first.name }))),
+        show: Some(("Show the curve", json!({ "plot": first.plot }))),
     }
 }
 
@@ -400,7 +442,7 @@ pub fn verdict(source: &Source) -> Verdict {
     }
 }
 
-fn trust(source: &Source, survey: &Survey) -> Answer {
+fn trust(source: &Source, survey: &Survey, edges: Option<[f64; 3]>) -> Answer {
     let verdict = verdict(source);
     let mut more = Vec::new();
     if let Some([residual, numerical]) = shares(source) {
@@ -431,7 +473,7 @@ fn trust(source: &Source, survey: &Survey) -> Answer {
             count(outflow as u64)
         ));
     }
-    more.extend(resolution(source, survey));
+    more.extend(resolution(source, survey, edges));
     Answer {
         id: "trust",
         question: "Can I trust it?",
@@ -448,17 +490,32 @@ fn trust(source: &Source, survey: &Survey) -> Answer {
 }
 
 /// How fine the run is.
-fn resolution(source: &Source, survey: &Survey) -> Option<String> {
+fn resolution(source: &Source, survey: &Survey, edges: Option<[f64; 3]>) -> Option<String> {
     let particles = of_summary(source, "particles");
     let particles = particles.or(survey.frames.last().map(|f| f.particles as f64))?;
-    let elements = of_summary(source, "elements");
-    let elements = elements.map_or(String::new(), |n| {
-        format!(" in a mesh of {} elements", count(n as u64))
-    });
-    Some(format!(
-        "Resolution: {} particles{elements}.",
-        count(particles as u64)
-    ))
+    let mut text = format!("Resolution: {} particles", count(particles as u64));
+    let counts = survey.frames.last().map(|f| &f.of_bodies);
+    if let Some(counts) = counts.filter(|c| c.len() > 1) {
+        let one = |(body, n): (&usize, &usize)| {
+            format!("{} {}", self::body(source, *body), count(*n as u64))
+        };
+        text += &format!(
+            " ({})",
+            counts.iter().map(one).collect::<Vec<_>>().join(", ")
+        );
+    }
+    if let Some(elements) = of_summary(source, "elements") {
+        text += &format!(", {} elements", count(elements as u64));
+    }
+    if let Some([least, median, greatest]) = edges {
+        text += &format!(
+            " with edges of {} to {}, half of them below {}",
+            figure(least, "m"),
+            figure(greatest, "m"),
+            figure(median, "m")
+        );
+    }
+    Some(text + ".")
 }
 
 #[cfg(test)]

@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(all(2_000, 50), (2_000, 50, 10));
         assert_eq!(all(40_000, 20), (40_000, 20, 8));
         assert_eq!(all(40_000, 50), (40_000, 22, 7));
-        assert_eq!(all(200_000, 4), (200_000, 4, 7));
+        assert_eq!(all(200_000, 4), (200_000, 4, 8));
         let (particles, frames, bits) = all(1_000_000, 100);
         assert!(
             particles == 50_000 && frames == 18 && bits == 7,

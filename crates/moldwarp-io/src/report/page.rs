@@ -38,7 +38,9 @@ pub fn page(source: &Source, wishes: Wishes) -> Result<(String, Vec<String>), Re
         about["pictures"] = pictures.about;
         blobs = pictures.blobs;
     }
-    let answers = answers(source, &survey);
+    let edges = &about["pictures"]["mesh"]["edge"];
+    let edges: Option<Vec<f64>> = serde_json::from_value(edges.clone()).unwrap_or_default();
+    let answers = answers(source, &survey, edges.and_then(|e| e.try_into().ok()));
     let nonce = blake3::hash(format!("{about}{}", source.scene).as_bytes()).to_hex();
     let page = Page {
         source,

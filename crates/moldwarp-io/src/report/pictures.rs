@@ -26,8 +26,6 @@ pub struct Pictures {
     pub about: Value,
     pub blobs: Blobs,
     pub share: Share,
-    /// Numbers of the frames that are shown.
-    pub frames: Vec<usize>,
 }
 
 /// Packed bytes as texts, by number.
@@ -78,19 +76,32 @@ impl Slots {
     }
 }
 
-/// So many particles, evenly among those that lie beside each other, and those of `always`.
+/// So many particles at most, evenly among those that lie beside each other, and those of `always` if
+/// they are not too many.
 fn choose(all: &BTreeSet<u32>, count: usize, always: &BTreeSet<u32>) -> Vec<u32> {
     if count >= all.len() {
         return all.iter().copied().collect();
     }
+    let empty = BTreeSet::new();
+    let always = if 2 * always.len() <= count {
+        always
+    } else {
+        &empty
+    };
     // Multiples of the golden ratio, less their whole part, fill 0 to 1 evenly and without a period,
     // so that not always the same of an element's particles are taken.
-    let share = count as f64 / all.len() as f64;
-    let taken = |&(n, id): &(usize, &u32)| {
-        (n as f64 * 0.618_033_988_749_894_9).fract() < share || always.contains(id)
-    };
-    let chosen = all.iter().enumerate().filter(taken);
-    chosen.map(|(_, &id)| id).collect()
+    let share = (count - always.len()) as f64 / all.len() as f64;
+    let even = |n: usize| (n as f64 * 0.618_033_988_749_894_9).fract() < share;
+    let mut room = count - always.len();
+    let mut chosen = Vec::new();
+    for (n, &id) in all.iter().enumerate() {
+        let extreme = always.contains(&id);
+        if extreme || (even(n) && room > 0) {
+            chosen.push(id);
+            room -= usize::from(!extreme);
+        }
+    }
+    chosen
 }
 
 impl Pictures {
@@ -117,11 +128,11 @@ impl Pictures {
         let slots = Slots::new(choose(&survey.ids, share.particles, &extremes));
         share.particles = slots.ids.len();
 
-        let mut frames = evenly(share.frames, survey.frames.len());
+        let frames = evenly(share.frames, survey.frames.len());
         let mut packer = Packer::new(survey, &slots, share.bits);
         let before = blobs.bytes();
         let mut shown = Vec::new();
-        for &number in &frames {
+        for number in frames {
             let frame = read(&source.particles[number].1)?;
             let mut about = packer.pack(&frame, &mut blobs)?;
             about["number"] = json!(number);
@@ -131,9 +142,12 @@ impl Pictures {
             about["mesh"] = json!(mesh.pack(source, number, &mut blobs)?);
             shown.push(about);
         }
-        // The estimate was of a few frames: should it be far off, every other frame goes.
-        while (blobs.bytes() - before) as f64 > room / SAFETY && shown.len() > 2 {
-            thin(&mut shown, &mut frames, &mut blobs);
+        // The estimate was of a few frames only.
+        let of_frames = (blobs.bytes() - before) as f64;
+        let room = room / SAFETY;
+        if of_frames > room && shown.len() > 2 {
+            let count = (SAFETY * room / of_frames * shown.len() as f64) as usize;
+            thin(&mut shown, count.max(2), &mut blobs);
         }
         share.frames = shown.len();
         let about = json!({
@@ -155,16 +169,15 @@ impl Pictures {
             about,
             blobs,
             share,
-            frames,
         })
     }
 }
 
-/// Bytes of a particle in a frame, for each of [`BITS`], from the first, the middle and the last frame.
+/// Bytes of a particle in a frame, for each of [`BITS`], from five frames.
 fn cost(source: &Source, survey: &Survey) -> Result<[f64; 3], ReportError> {
     let slots = Slots::new(choose(&survey.ids, SAMPLE, &BTreeSet::new()));
     let mut cost = [0.0; 3];
-    let numbers = evenly(3, survey.frames.len());
+    let numbers = evenly(5, survey.frames.len());
     for &number in &numbers {
         let frame = read(&source.particles[number].1)?;
         for (cost, bits) in cost.iter_mut().zip(BITS) {
@@ -177,26 +190,20 @@ fn cost(source: &Source, survey: &Survey) -> Result<[f64; 3], ReportError> {
     Ok(cost.map(|bytes| bytes / count as f64))
 }
 
-/// Takes out every other frame but the last one.
-fn thin(shown: &mut Vec<Value>, frames: &mut Vec<usize>, blobs: &mut Blobs) {
-    let last = shown.len() - 1;
-    let gone = |i: usize| i % 2 == 1 && i != last;
-    for (_, about) in shown.iter().enumerate().filter(|(i, _)| gone(*i)) {
-        let numbers = about["fields"].as_array().into_iter().flatten();
-        let numbers = numbers.chain([&about["present"], &about["mesh"]]);
-        for number in numbers.filter_map(Value::as_u64) {
-            blobs.texts[number as usize].clear();
+/// Keeps so many of the frames, evenly.
+fn thin(shown: &mut Vec<Value>, count: usize, blobs: &mut Blobs) {
+    let kept = evenly(count, shown.len());
+    let mut number = 0;
+    shown.retain(|about| {
+        number += 1;
+        let stays = kept.contains(&(number - 1));
+        if !stays {
+            let all = about["fields"].as_array().into_iter().flatten();
+            let all = all.chain([&about["present"], &about["mesh"]]);
+            all.filter_map(Value::as_u64)
+                .for_each(|blob| blobs.texts[blob as usize].clear());
         }
-    }
-    let mut i = 0;
-    shown.retain(|_| {
-        i += 1;
-        !gone(i - 1)
-    });
-    i = 0;
-    frames.retain(|_| {
-        i += 1;
-        !gone(i - 1)
+        stays
     });
 }
 

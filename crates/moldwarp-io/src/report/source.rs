@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 /// What stands in the folder, but for the frames, which are read when they are needed.
 #[derive(Debug)]
 pub struct Source {
-    pub path: PathBuf,
     /// As run.
     pub scene: String,
     pub outline: Outline,
@@ -50,7 +49,6 @@ impl Source {
         };
         let (history_text, history) = history(&folder.history())?;
         Ok(Source {
-            path: path.to_owned(),
             scene,
             outline,
             summary,

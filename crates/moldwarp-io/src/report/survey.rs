@@ -30,6 +30,8 @@ pub struct FrameFigures {
     /// s.
     pub time: f64,
     pub particles: usize,
+    /// How many of each body.
+    pub of_bodies: BTreeMap<usize, usize>,
     /// By field, a range for each of its parts.
     pub ranges: BTreeMap<String, Vec<Range>>,
     /// How many particles yield, and how many have ever yielded; none if no material can.
@@ -93,6 +95,7 @@ impl Survey {
         self.frames.push(FrameFigures {
             time,
             particles: ids.len(),
+            of_bodies: of_bodies(frame),
             ranges: ranges.filter(|r| !r.1.is_empty()).collect(),
             yielding: yielding(frame),
             sheared: sheared(frame),
@@ -185,6 +188,13 @@ fn range(field: &Field, part: Part, ids: &[u32], frame: &Frame) -> Option<Range>
         place: frame.points[high.1],
         body,
     })
+}
+
+fn of_bodies(frame: &Frame) -> BTreeMap<usize, usize> {
+    let mut counts = BTreeMap::new();
+    let bodies = frame.field("body").into_iter().flat_map(|f| &f.values);
+    bodies.for_each(|&body| *counts.entry(body as usize).or_default() += 1);
+    counts
 }
 
 fn yielding(frame: &Frame) -> Option<[usize; 2]> {

@@ -1,8 +1,8 @@
-// Draws particles and the mesh's edges with WebGL 2. Nothing is computed per particle here: positions,
+// Draws with WebGL 2. Nothing is computed per particle here: positions,
 // values and colours are made of the packed arrays by the graphics processor.
 
 import { Camera } from "./camera";
-import type { M3, M4, V3 } from "./space";
+import { LEAST, turned, weights, type Picture, type Renderer, type Shown } from "./picture";
 import { matrix, multiply } from "./space";
 
 const PARTICLES = `#version 300 es
@@ -14,7 +14,7 @@ in vec3 second;
 in float size;
 uniform mat4 view;
 uniform vec3 low, extent;
-uniform float one, magnified, pixels, most;
+uniform float one, magnified, pixels, least, most;
 uniform vec3 weights1, weights2;
 uniform bool whole;
 uniform vec2 range;
@@ -28,7 +28,7 @@ void main() {
   float share = clamp((value - range.x) * range.y, 0.0, 1.0);
   colour = textureLod(palette, vec2((share * 255.0 + 0.5) / 256.0, 0.5), 0.0).rgb;
   gl_Position = view * vec4(place, 1.0);
-  wide = clamp(pixels * size / gl_Position.w, 1.5, most);
+  wide = clamp(pixels * size / gl_Position.w, least, most);
   gl_PointSize = wide;
   // Far outside the picture, and so not drawn.
   if (size <= 0.0 || dot(clip.xyz, place) > clip.w) gl_Position = vec4(0.0, 0.0, 9.0, 1.0);
@@ -45,7 +45,7 @@ void main() {
   // Small ones are drawn as they are: no one sees that they are not round.
   if (wide > 3.0 && square > 1.0) discard;
   float depth = sqrt(max(1.0 - square, 0.0));
-  float light = wide > 3.0 ? 0.52 + 0.5 * (0.35 * at.x * -1.0 + -0.4 * at.y + 0.8 * depth) : 0.9;
+  float light = wide > 3.0 ? 0.52 + 0.5 * (0.35 * at.x * -1.0 + -0.4 * at.y + 0.8 * depth) : 0.8;
   pixel = vec4(colour * min(light, 1.06), 1.0);
 }`;
 
@@ -66,37 +66,7 @@ uniform vec4 ink;
 out vec4 pixel;
 void main() { pixel = ink; }`;
 
-/** What a number is made of: the array of its field, and how. */
-export interface Shown {
-  /** As half floats, `components` beside each other; or whole numbers if `kinds`. */
-  codes: Uint16Array<ArrayBuffer>;
-  components: 1 | 3 | 6;
-  kinds: boolean;
-  /** The length of the vector in place of a component. */
-  whole: boolean;
-  component: number;
-  /** In units of the codes. */
-  range: [number, number];
-  palette: Uint8Array<ArrayBuffer>;
-}
-
-export interface Picture {
-  view: M4;
-  copies: M3[];
-  /** Times that displacements are drawn. */
-  magnified: number;
-  /** Times that particles are drawn as large as they are apart. */
-  blown: number;
-  clip: [number, number, number, number];
-  background: V3;
-  ink: V3;
-  edges: number;
-  outline: boolean;
-  /** A particle that is marked. */
-  marked: number | null;
-}
-
-export class Renderer {
+export class Graphics implements Renderer {
   private readonly gl: WebGL2RenderingContext;
   private readonly particles: Program;
   private readonly lines: Program;
@@ -108,7 +78,7 @@ export class Renderer {
   private mesh: { low: number[]; extent: number[]; one: number; edges: number; outline: number } | null = null;
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, powerPreference: "high-performance" });
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false });
     if (!gl) throw new Error("this browser does not offer WebGL 2");
     this.gl = gl;
     this.particles = new Program(gl, PARTICLES, BALL);
@@ -221,6 +191,7 @@ export class Renderer {
     gl.uniform1f(program.at("one"), this.place.one);
     gl.uniform1f(program.at("magnified"), picture.magnified);
     gl.uniform1f(program.at("pixels"), Camera.pixels(height) * picture.blown);
+    gl.uniform1f(program.at("least"), LEAST);
     gl.uniform1f(program.at("most"), Math.min(64, gl.getParameter(gl.ALIASED_POINT_SIZE_RANGE)[1]));
     gl.uniform1i(program.at("whole"), shown.whole ? 1 : 0);
     gl.uniform2f(program.at("range"), low, high > low ? 1 / (high - low) : 0);
@@ -230,15 +201,12 @@ export class Renderer {
       gl.uniform3fv(program.at("weights1"), first);
       gl.uniform3fv(program.at("weights2"), second);
       gl.uniformMatrix4fv(program.at("view"), false, multiply(picture.view, matrix(copy)));
-      // The clipping plane stands still while the part goes round.
-      const [a, b, c, d] = picture.clip;
-      const turned = [0, 1, 2].map((j) => a * copy[0][j]! + b * copy[1][j]! + c * copy[2][j]!);
-      gl.uniform4f(program.at("clip"), turned[0]!, turned[1]!, turned[2]!, d);
+      gl.uniform4fv(program.at("clip"), turned(picture.clip, copy));
       gl.drawArrays(gl.POINTS, 0, this.count);
     }
   }
 
-  private drawMesh(picture: Picture, mesh: NonNullable<Renderer["mesh"]>): void {
+  private drawMesh(picture: Picture, mesh: NonNullable<Graphics["mesh"]>): void {
     const gl = this.gl;
     const program = this.lines;
     program.use();
@@ -280,28 +248,11 @@ export class Renderer {
     gl.vertexAttribPointer(at, components, type, normalised, stride, offset);
   }
 
-  /** Waits until all is drawn, and returns the middle pixel. */
-  finish(): Uint8Array {
+  finish(): void {
     const gl = this.gl;
     const pixel = new Uint8Array(4);
     gl.readPixels(this.canvas.width >> 1, this.canvas.height >> 1, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-    return pixel;
   }
-}
-
-/** The sum over a field's components that is the wished component after a rotation or reflection. Tensors
- * are xx, yy, zz, xy, yz, zx. */
-function weights(shown: Shown, copy: M3): [V3, V3] {
-  const none: V3 = [0, 0, 0];
-  if (shown.components === 1) return [[1, 0, 0], none];
-  if (shown.components === 3) return [copy[shown.component]!, none];
-  const PAIRS = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]] as const;
-  const [a, b] = PAIRS[shown.component]!;
-  const all = PAIRS.map(([i, j]) => {
-    const here = copy[a]![i]! * copy[b]![j]!;
-    return i === j ? here : here + copy[a]![j]! * copy[b]![i]!;
-  });
-  return [all.slice(0, 3) as V3, all.slice(3) as V3];
 }
 
 class Program {

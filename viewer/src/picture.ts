@@ -32,8 +32,6 @@ export interface Picture {
   ink: V3;
   edges: number;
   outline: boolean;
-  /** A particle that is marked. */
-  marked: number | null;
 }
 
 /** Draws particles and the mesh's edges. */

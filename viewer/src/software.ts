@@ -263,8 +263,8 @@ export class Software implements Renderer {
   }
 }
 
-/** A canvas with what draws on it best: the graphics processor if there is one. `#webgl` and `#software` at the
- * end of the page's address choose. */
+/** Whether to draw here: where the browser has no graphics processor that it can use. `#webgl` and `#software`
+ * at the end of the page's address choose. */
 export function bySoftware(): boolean {
   if (location.hash === "#webgl") return false;
   if (location.hash === "#software") return true;

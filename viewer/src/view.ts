@@ -416,7 +416,6 @@ export class View {
       ink: this.colourOf("--mesh"),
       edges: this.edges,
       outline: this.outline,
-      marked: this.marked,
     });
     this.drawTriad();
     this.placeMark();

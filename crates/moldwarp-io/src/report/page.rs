@@ -57,7 +57,9 @@ pub fn page(source: &Source, wishes: Wishes) -> Result<(String, Vec<String>), Re
 /// About the bytes of all but the history and the pictures.
 fn html_bytes(source: &Source) -> usize {
     let tables = 900 * source.history.names.len() + 60_000;
-    STYLE.len() + SCRIPT.len() + 2 * source.scene.len() + 2 * source.summary_text.len() + tables
+    // Ranges of frames, and the elements that the blobs stand in.
+    let frames = 300_000;
+    frames + STYLE.len() + SCRIPT.len() + 2 * source.scene.len() + 2 * source.summary_text.len() + tables
 }
 
 /// The history packed; if it is too long, with every second, fourth … row only.

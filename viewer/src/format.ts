@@ -7,7 +7,7 @@ export function number(x: number): string {
   const size = Math.abs(x);
   if (size >= 1e7 || size < 1e-4) {
     const [digits, power] = x.toExponential(3).split("e");
-    return `${digits}·10${superscript(Number(power))}`.replace(/^-/, "−");
+    return `${Number(digits)}·10${superscript(Number(power))}`.replace(/^-/, "−");
   }
   return String(Number(x.toPrecision(4))).replace("-", "−");
 }

@@ -37,7 +37,7 @@ run() {
         exit 1
     }
 }
-run absorbing-column --set output.frames=8 --set stages.0.duration="0.5 s"
+run absorbing-column --set title="</script><img src=x onerror=alert(1)> & '\"" --set output.frames=8 --set stages.0.duration="0.5 s"
 run drop-anchor --set output.frames=4 --set stages.0.duration="8 ms"
 run dynamic-probing --set output.frame_interval="4 ms" --set stages.0.duration="8 ms" --set stages.1.duration="4 ms"
 run tunnel-face --set output.frame_interval="0.1 s" --set stages.1.duration="0.3 s"

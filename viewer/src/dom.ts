@@ -50,7 +50,19 @@ export function save(name: string, content: Blob): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** The value of a colour or length of the page's style. */
+/** What is printed is on white paper, whatever the screen is. */
+const PAPER: Record<string, string> = {
+  "--paper": "#ffffff",
+  "--ink": "#000000",
+  "--line": "#c8cdd2",
+  "--ground": "#ffffff",
+  "--mesh": "#26323f",
+};
+let printing = false;
+addEventListener("beforeprint", () => (printing = true));
+addEventListener("afterprint", () => (printing = false));
+
+/** A colour of the page's style. */
 export function style(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  return (printing && PAPER[name]) || getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

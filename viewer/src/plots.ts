@@ -252,4 +252,5 @@ export function watch(plots: Plot[]): void {
     width = innerWidth;
   });
   addEventListener("beforeprint", () => plots.forEach(draw));
+  addEventListener("afterprint", again);
 }

@@ -529,6 +529,7 @@ export class View {
   private beforePrint(): void {
     this.draw();
     this.print.src = this.canvas.toDataURL("image/png");
+    addEventListener("afterprint", () => this.redraw(), { once: true });
   }
 
   /** The picture with its legend. */

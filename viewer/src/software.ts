@@ -53,7 +53,8 @@ export class Software implements Renderer {
   private mesh: { start: Float32Array; now: Float32Array; one: number; edges: Uint32Array; outline: Uint32Array } | null = null;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.context = canvas.getContext("2d", { alpha: false })!;
+    // Kept in memory, where it is written, and not with a graphics processor.
+    this.context = canvas.getContext("2d", { alpha: false, willReadFrequently: true })!;
     for (let r = 0; r <= MOST / 2; r += STEP) this.stamps.push(stamp(Math.max(r, LEAST / 2)));
   }
 

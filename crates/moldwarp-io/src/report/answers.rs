@@ -124,7 +124,7 @@ fn rest(times: &[f64], energy: &[f64]) -> Rest {
         return Rest::Nothing;
     };
     // What is no number is no rest.
-    let moving = |e: &f64| !(*e < AT_REST * peak);
+    let moving = |e: &f64| e.is_nan() || *e >= AT_REST * peak;
     match energy
         .iter()
         .rposition(moving)
@@ -419,7 +419,7 @@ pub fn verdict(source: &Source) -> Verdict {
             Grade::Bad,
             "Do not use its results: see the warnings.".to_owned(),
         )
-    } else if warnings > 0 || !(numerical <= NUMERICAL) {
+    } else if warnings > 0 || numerical.is_nan() || numerical > NUMERICAL {
         (
             Grade::Doubt,
             "Its results are to be doubted: see the warnings.".to_owned(),

@@ -59,7 +59,12 @@ fn html_bytes(source: &Source) -> usize {
     let tables = 900 * source.history.names.len() + 60_000;
     // Ranges of frames, and the elements that the blobs stand in.
     let frames = 300_000;
-    frames + STYLE.len() + SCRIPT.len() + 2 * source.scene.len() + 2 * source.summary_text.len() + tables
+    frames
+        + STYLE.len()
+        + SCRIPT.len()
+        + 2 * source.scene.len()
+        + 2 * source.summary_text.len()
+        + tables
 }
 
 /// The history packed; if it is too long, with every second, fourth … row only.

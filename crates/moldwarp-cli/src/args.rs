@@ -31,6 +31,8 @@ pub enum Command {
     /// One run of a sweep, which starts it
     #[command(hide = true)]
     SweepPart(PartArgs),
+    /// Make one page of a run that opens in any browser: answers, curves, the ground in 3D
+    Report(ReportArgs),
     /// Begin with an example
     New(NewArgs),
     /// Say how a run went or goes: stages, frames, extremes, energies, how it ended
@@ -70,6 +72,9 @@ pub struct RunArgs {
     /// Replace an unfinished run; write beside files that are not moldwarp's
     #[arg(long)]
     pub force: bool,
+    /// Write a report of it at the end: report.html in its folder
+    #[arg(long)]
+    pub report: bool,
     #[command(flatten)]
     pub how: HowArgs,
 }
@@ -85,6 +90,9 @@ pub struct ResumeArgs {
     /// Number of threads; all cores if not given. The results do not depend on it
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// Write a report of it at the end: report.html in its folder
+    #[arg(long)]
+    pub report: bool,
     #[command(flatten)]
     pub how: HowArgs,
 }
@@ -239,6 +247,22 @@ pub struct CompletionsArgs {
 pub struct ManArgs {
     /// Folder for the pages of all commands; it is made if it is not there
     pub dir: Option<PathBuf>,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ReportArgs {
+    /// The folder of the run
+    pub dir: PathBuf,
+    /// Where the report goes [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub to: Option<PathBuf>,
+    /// Draw no more particles than this; 200,000, or fewer where the page would become too large, if not
+    /// given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub particles: Option<u32>,
+    /// Show no more frames than this; all, or fewer where the page would become too large, if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
 }
 
 #[derive(Debug, ClapArgs)]

@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod exit;
+mod failure;
 mod inspect;
 mod manual;
 mod new;
@@ -22,13 +23,14 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    report::install();
+    failure::install();
     let done = match Args::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => resume::resume(&args),
         Command::Check(args) => check::check(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::SweepPart(args) => return sweep::part(&args),
+        Command::Report(args) => report::report(&args),
         Command::New(args) => new::new(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Plot(args) => plot::plot(&args),
@@ -67,6 +69,12 @@ impl Failure {
     /// Wrong input or arguments.
     fn input(report: impl Into<miette::Report>) -> Failure {
         Failure::new(Exit::Input, report)
+    }
+}
+
+impl From<moldwarp_io::report::ReportError> for Failure {
+    fn from(error: moldwarp_io::report::ReportError) -> Failure {
+        Failure::input(error)
     }
 }
 

@@ -16,7 +16,7 @@ pub fn resume(args: &ResumeArgs) -> Result<Exit, Failure> {
         ..RunOptions::default()
     };
     match go_on(&args.dir, &args.sets, &options, &mut Display::new(threads))? {
-        Some(outcome) => conclude(outcome, args.how.profile),
+        Some(outcome) => conclude(outcome, args.how.profile, args.report),
         None => {
             say(&format!(
                 "the run in {} is over; nothing to do\n",

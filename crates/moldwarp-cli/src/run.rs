@@ -3,7 +3,7 @@
 use crate::args::{HowArgs, RunArgs, SceneArgs};
 use crate::exit::{Exit, of_signal, of_stop};
 use crate::progress::Display;
-use crate::{Failure, say, signals, text};
+use crate::{Failure, report, say, signals, text};
 use moldwarp::Simd;
 use moldwarp::measure::Energies;
 use moldwarp_io::output::summary::Compared;
@@ -18,11 +18,11 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
         ..options(args, threads)?
     };
     let outcome = compute(scene, &options, &mut Display::new(threads))?;
-    conclude(outcome, args.how.profile)
+    conclude(outcome, args.how.profile, args.report)
 }
 
-/// Says how a run has ended.
-pub fn conclude(outcome: Outcome, with_profile: bool) -> Result<Exit, Failure> {
+/// Says how a run has ended, and writes a report of it if it is wanted.
+pub fn conclude(outcome: Outcome, with_profile: bool, with_report: bool) -> Result<Exit, Failure> {
     if let Some(signal) = outcome.interrupted {
         eprintln!(
             "interrupted at step {}, t = {} s; `moldwarp resume {}` goes on from there",
@@ -35,6 +35,9 @@ pub fn conclude(outcome: Outcome, with_profile: bool) -> Result<Exit, Failure> {
     say(&conclusion(&outcome));
     if with_profile {
         say(&profile(&outcome));
+    }
+    if with_report {
+        report::of(&outcome)?;
     }
     let Some(stop) = &outcome.stopped else {
         return Ok(Exit::Done);

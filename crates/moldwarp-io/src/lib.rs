@@ -6,6 +6,7 @@ pub mod output;
 pub mod plot;
 #[cfg(test)]
 mod reference;
+pub mod report;
 pub mod results;
 pub mod run;
 pub mod scene;

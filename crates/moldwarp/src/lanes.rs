@@ -307,6 +307,13 @@ impl Tiles {
         }
     }
 
+    /// Room for more tiles.
+    pub(crate) fn reserve(&mut self, tiles: usize) {
+        self.tiles.reserve_exact(tiles);
+        self.slots.reserve_exact(tiles * (DEEP as usize + 1));
+        self.helpers.reserve_exact(tiles);
+    }
+
     /// Number of tiles.
     pub fn len(&self) -> usize {
         self.tiles.len() - 1

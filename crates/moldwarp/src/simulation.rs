@@ -251,9 +251,6 @@ impl Simulation {
         self.guests.clear();
         self.active.rebuild(&grid, &mut self.order);
         self.order.settle(&mut self.particles);
-        if grid.margin {
-            self.guests.make_room(&mut self.particles);
-        }
         let destination = &self.order.destination;
         for point in &mut self.loads {
             point.particle = destination[point.particle as usize];
@@ -270,6 +267,12 @@ impl Simulation {
         }
         self.shared.renew(&self.nodes);
         self.cells.renew(&self.active, &self.plan.mesh);
+        if self.may_have_guests() {
+            let tiles = Guests::most_tiles(self.particles.len());
+            self.guests.make_room(&mut self.particles);
+            self.active.make_room(tiles);
+            self.cells.make_room(tiles, self.nodes.len());
+        }
     }
 }
 

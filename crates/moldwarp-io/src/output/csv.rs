@@ -196,6 +196,11 @@ pub fn read_growing(path: &Path) -> Result<Table, CsvError> {
     numbers(records(whole, path)?, path)
 }
 
+/// The same of the text of a file; `path` is for messages.
+pub fn parse(text: &str, path: &Path) -> Result<Table, CsvError> {
+    numbers(records(text, path)?, path)
+}
+
 fn numbers(records: Records, path: &Path) -> Result<Table, CsvError> {
     let mut columns = vec![Vec::new(); records.names.len()];
     for (row, &line) in records.rows.iter().zip(&records.lines) {

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 const SUMMARY: &str = "summary.json";
 /// Present in the folder of every run that has begun.
 const LOG: &str = "run.log";
+/// Of a run that is over, or of its part that is there.
+const REPORT: &str = "report.html";
 /// Frames are in a folder of their own; the `.pvd` files beside it name them.
 const FRAMES: &str = "frames";
 /// Particles at the ends of stages, in a folder of their own.
@@ -28,7 +30,7 @@ const OURS: [&str; 10] = [
     "history.csv",
     "particles.pvd",
     "mesh.pvd",
-    "report.html",
+    REPORT,
 ];
 
 /// A folder that is ready for a run: it exists, and nothing of an earlier run is left in it but
@@ -204,6 +206,11 @@ impl Folder {
 
     pub fn summary(&self) -> PathBuf {
         self.path.join(SUMMARY)
+    }
+
+    /// What `moldwarp report` makes of the run.
+    pub fn report(&self) -> PathBuf {
+        self.path.join(REPORT)
     }
 
     /// The collection of a kind of frames, `particles` or `mesh`.

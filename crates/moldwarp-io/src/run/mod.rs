@@ -28,6 +28,7 @@ pub(crate) use history::FIRST;
 pub(crate) use history::{Expected, columns, unit as unit_of_column};
 pub(crate) use stage_files::StageFile;
 pub(crate) use steps::end_time;
+pub(crate) use warnings::{NUMERICAL, RESIDUAL};
 pub(crate) use whole::factor as whole_factor;
 
 use crate::mesh::describe_quality;

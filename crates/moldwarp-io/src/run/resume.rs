@@ -99,6 +99,7 @@ pub fn resume(
         options.threads
     ))?;
     remove(&folder.summary())?;
+    remove(&folder.report())?;
     beginning.text = scene.text;
     write_whole(&folder.scene(), |out| {
         out.write_all(beginning.text.as_bytes())

@@ -5,9 +5,9 @@ use moldwarp::Simulation;
 use moldwarp::measure::Energies;
 
 /// A residual above this part of the energy turned over is no round-off.
-const RESIDUAL: f64 = 1e-6;
+pub(crate) const RESIDUAL: f64 = 1e-6;
 /// Numerical terms above this part of it: the run is too coarse, or unstable.
-const NUMERICAL: f64 = 0.05;
+pub(crate) const NUMERICAL: f64 = 0.05;
 
 /// One sentence each; none if there is nothing to say.
 pub(super) fn warnings(sim: &Simulation) -> Vec<String> {

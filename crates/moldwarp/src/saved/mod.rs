@@ -13,8 +13,8 @@ mod types;
 mod values;
 
 pub use out::{Out, Part, Section, to_bytes};
-pub(crate) use values::{list_size, save_list};
 pub use simulation::instant;
+pub(crate) use values::{list_size, save_list};
 
 /// Something that can be written as bytes and read back, equal bit for bit.
 pub trait Saved: Sized {

@@ -219,6 +219,17 @@ impl Active {
         self.own_tiles = self.tiles.len();
     }
 
+    /// Room for guests.
+    pub fn make_room(&mut self, tiles: usize) {
+        let lanes = tiles * LANES;
+        self.tiles.reserve(tiles);
+        self.elements.reserve_exact(lanes);
+        self.cell_nodes.reserve_exact(lanes);
+        self.is_cell.reserve_exact(lanes);
+        self.fields.reserve_exact(lanes);
+        self.ranks.reserve_exact(lanes);
+    }
+
     /// Lays out guests behind the others: cells that they are in and how many each has. `put` is told the
     /// place of each.
     pub fn invite(&mut self, guests: &[(u32, u32)], put: impl FnMut(u32, u32)) {

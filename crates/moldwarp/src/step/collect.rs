@@ -66,6 +66,12 @@ impl Portions {
         self.numbers.resize(before * MOST, 0.0);
     }
 
+    /// Room for two more portions of so many nodes.
+    pub fn make_room(&mut self, nodes: usize) {
+        self.windows.reserve(2);
+        self.numbers.reserve_exact(2 * nodes * MOST);
+    }
+
     /// To be split at portions, with other things kept by tile: what nodes are given N numbers of.
     pub fn shares<const N: usize>(&mut self) -> Shares<'_, N> {
         const { assert!(N <= MOST) }

@@ -8,6 +8,7 @@
 //!
 //! Only where one body moves in a mesh that stays; else particles are put in order in each step.
 
+use crate::lanes::LANES;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
 
@@ -75,6 +76,11 @@ impl Guests {
         body.reserve_exact(most);
         element.reserve_exact(most);
         (particles.columns_mut()).for_each(|column| column.reserve_exact(most));
+    }
+
+    /// Most tiles that they can take.
+    pub fn most_tiles(particles: usize) -> usize {
+        (particles / FEW).div_ceil(LANES) + 1
     }
 
     fn arrive(&mut self, particles: &mut Particles) {

@@ -224,6 +224,17 @@ impl Cells {
         self.find_shapes(active, mesh);
     }
 
+    /// Room for guests. A portion of theirs may have all nodes.
+    pub(crate) fn make_room(&mut self, tiles: usize, nodes: usize) {
+        self.shapes.reserve_exact(tiles);
+        self.sums.reserve_exact(tiles);
+        self.pairs.reserve_exact(tiles);
+        self.stresses.reserve_exact(tiles);
+        self.forces.reserve_exact(tiles);
+        self.strains.reserve_exact(tiles);
+        self.portions.make_room(nodes);
+    }
+
     /// The same after guests have been laid out anew.
     pub(crate) fn renew_guests(&mut self, active: &Active, mesh: &Mesh) {
         let tiles = active.tiles.len();

@@ -98,6 +98,7 @@ fn state_variables() -> Vec<(StateField, Vec<&'static str>)> {
             Material::LinearElastic(_) => "linear-elastic",
             Material::MohrCoulomb(_) => "mohr-coulomb",
             Material::Rigid => "rigid",
+            Material::External(_) => "external",
         };
         for field in material.state_fields() {
             match found.iter_mut().find(|f| f.0.name == field.name) {

@@ -48,13 +48,17 @@ def copies() -> None:
     sim.step(2)
     print(f"{len(sim.particles):,} particles, {memory():,.0f} MB")
     for name in ["position", "velocity", "stress"]:
-        seconds = []
-        for _ in range(5):
-            begun = time.perf_counter()
+        seconds, processor = [], []
+        for _ in range(10):
+            begun, used = time.perf_counter(), time.process_time()
             values = getattr(sim.particles, name)
             seconds.append(time.perf_counter() - begun)
+            processor.append(time.process_time() - used)
         shown = ", ".join(f"{1e3 * s:.0f}" for s in seconds)
-        print(f"copy of {name}, {values.shape}, {values.nbytes / 1e6:.0f} MB: {shown} ms")
+        print(
+            f"copy of {name}, {values.shape}, {values.nbytes / 1e6:.0f} MB: {shown} ms; "
+            f"processor time at least {1e3 * min(processor):.0f} ms"
+        )
         del values
     gc.collect()
     before = memory()
@@ -73,21 +77,24 @@ def copies() -> None:
 def material() -> None:
     constants: dict[str, Any] = {"young_modulus": "1 MPa", "poisson_ratio": 0.3, "density": "2 t/m3"}
     rates: dict[str, list[float]] = {"moldwarp": [], "Python": []}
+    processor: dict[str, list[float]] = {"moldwarp": [], "Python": []}
     stresses = {}
     for _ in range(3):
         for name in rates:
             soil = Elastic(**constants) if name == "Python" else {"model": "linear-elastic", **constants}
             sim = moldwarp.Simulation(block([16, 16, 16], soil))
             sim.step(5)
-            begun = time.perf_counter()
+            begun, used = time.perf_counter(), time.process_time()
             sim.step(100)
             rates[name].append((time.perf_counter() - begun) / 100)
+            processor[name].append((time.process_time() - used) / 100)
             stresses[name] = sim.particles.stress
     count = len(sim.particles)
     for name, seconds in rates.items():
         shown = ", ".join(f"{1e3 * s:.1f}" for s in seconds)
         print(f"{count:,} particles, law of {name}: {shown} ms a step")
-    print(f"ratio of the fastest: {min(rates['Python']) / min(rates['moldwarp']):.2f}")
+    for what, values in [("wall time", rates), ("processor time", processor)]:
+        print(f"ratio of the least {what}: {min(values['Python']) / min(values['moldwarp']):.2f}")
     apart = np.abs(stresses["Python"] - stresses["moldwarp"]).max() / np.abs(stresses["moldwarp"]).max()
     print(f"stresses differ by {apart:.1e} of the greatest")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import os
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -55,10 +54,3 @@ def command() -> str:
     if not found:
         pytest.skip("the command is not there: MOLDWARP_COMMAND names it")
     return found
-
-
-def changed(scene: dict[str, Any], change: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
-    """A copy of a scene with a change."""
-    scene = copy.deepcopy(scene)
-    change(scene)
-    return scene

@@ -14,12 +14,13 @@ const ELASTIC: LinearElastic = LinearElastic {
     poisson_ratio: 0.3,
 };
 
-fn sand() -> Material {
+/// Clay that yields but does not open: a law from outside knows nothing of separation.
+fn clay() -> Material {
     let parameters = MohrCoulombParameters {
-        cohesion: 100.0,
-        friction_angle: 0.5,
-        dilation_angle: 0.1,
-        tension_cutoff: None,
+        cohesion: 300.0,
+        friction_angle: 0.0,
+        dilation_angle: 0.0,
+        tension_cutoff: Some(1e6),
     };
     Material::MohrCoulomb(MohrCoulomb::new(ELASTIC, parameters).unwrap())
 }
@@ -128,12 +129,12 @@ fn bytes(sim: &Simulation) -> Vec<u8> {
 #[test]
 fn a_law_that_says_the_same_is_the_same() {
     let elastic = || Material::LinearElastic(ELASTIC);
-    let own = ended(fall(elastic(), sand()));
+    let own = ended(fall(elastic(), clay()));
     assert!(own.energies().plastic > 1e-3 * own.energy_turned_over());
     let own = bytes(&own);
-    assert!(own == bytes(&ended(fall(given(elastic()), sand()))));
-    assert!(own == bytes(&ended(fall(elastic(), given(sand())))));
-    assert!(own == bytes(&ended(fall(given(elastic()), given(sand())))));
+    assert!(own == bytes(&ended(fall(given(elastic()), clay()))));
+    assert!(own == bytes(&ended(fall(elastic(), given(clay())))));
+    assert!(own == bytes(&ended(fall(given(elastic()), given(clay())))));
     let mut one = fall(elastic(), elastic());
     one.bodies[1].material = 0;
     let mut same = fall(given(elastic()), elastic());
@@ -168,7 +169,7 @@ fn a_law_that_fails_stops_the_run() {
             elastic: ELASTIC,
             law,
         });
-        let mut sim = Simulation::new(fall(own, sand())).unwrap();
+        let mut sim = Simulation::new(fall(own, clay())).unwrap();
         let id = sim.particles().id.clone();
         let body = sim.particles().body.clone();
         let left: Vec<u32> = id

@@ -3,6 +3,7 @@
 use crate::errors;
 use crate::law::PythonLaw;
 use crate::mesh;
+use crate::simulation::check_process;
 use moldwarp::material::Law;
 use moldwarp_io::scene::{self, Dimension, Given};
 use pyo3::exceptions::PyValueError;
@@ -49,6 +50,7 @@ impl Scene {
     /// Reads a file, or scene.toml in a folder.
     #[staticmethod]
     fn load(py: Python, path: PathBuf, sets: Vec<String>) -> PyResult<Scene> {
+        check_process()?;
         let read = py.detach(|| scene::load(&path, &sets));
         Ok(Scene {
             scene: read.map_err(|error| errors::scene(&error))?,
@@ -66,6 +68,7 @@ impl Scene {
         meshes: Vec<(String, mesh::Arrays)>,
         laws: Vec<LawArguments>,
     ) -> PyResult<Scene> {
+        check_process()?;
         let laws = Laws::new(laws)?;
         let mut given = laws.given();
         for (name, arrays) in meshes {

@@ -14,7 +14,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, TryLockError};
 use std::time::{Duration, Instant};
 
 /// The state, and who looks at it.
@@ -127,35 +127,59 @@ impl Drop for Cell {
 #[pyclass(frozen, module = "moldwarp._moldwarp")]
 pub struct Simulation {
     cell: Mutex<Cell>,
-    process: u32,
+}
+
+/// Refuses to compute in a process that was forked from one that has: the solver's threads stay
+/// behind, and waiting for them would never end.
+pub fn check_process() -> PyResult<()> {
+    static FIRST: OnceLock<u32> = OnceLock::new();
+    let process = std::process::id();
+    if *FIRST.get_or_init(|| process) == process {
+        return Ok(());
+    }
+    Err(PyRuntimeError::new_err(
+        "this process was forked from one that has used moldwarp, whose threads are not here; for many \
+         simulations at a time use threads, or the start method `spawn` of multiprocessing",
+    ))
+}
+
+fn pool(threads: Option<usize>) -> PyResult<Option<rayon::ThreadPool>> {
+    let pool = |count: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+        pool.map_err(|e| PyRuntimeError::new_err(format!("cannot start {count} threads: {e}")))
+    };
+    threads.map(pool).transpose()
+}
+
+/// With threads of its own, or with those of all.
+fn within<T: Send>(threads: &Option<rayon::ThreadPool>, f: impl FnOnce() -> T + Send) -> T {
+    match threads {
+        Some(threads) => threads.install(f),
+        None => f(),
+    }
 }
 
 impl Simulation {
-    fn new(session: Session, laws: &Laws, threads: Option<usize>) -> PyResult<Simulation> {
-        let pool = |count: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(count);
-            pool.build()
-                .map_err(|e| PyRuntimeError::new_err(format!("cannot start {count} threads: {e}")))
-        };
+    fn new(session: Session, laws: &Laws, threads: Option<rayon::ThreadPool>) -> Simulation {
         let cell = Cell {
             session,
             frozen: 0,
             held: None,
             laws: laws.0.iter().map(|law| law.1.clone()).collect(),
-            threads: threads.map(pool).transpose()?,
+            threads,
             places: None,
             start: None,
             stressed: false,
             pace: (0.0, 0.0),
         };
-        Ok(Simulation {
+        Simulation {
             cell: Mutex::new(cell),
-            process: std::process::id(),
-        })
+        }
     }
 
     /// The state, for this thread alone.
     pub fn look(&self) -> PyResult<MutexGuard<'_, Cell>> {
+        check_process()?;
         match self.cell.try_lock() {
             Ok(cell) => Ok(cell),
             Err(TryLockError::WouldBlock) => Err(BusyError::new_err(
@@ -168,13 +192,6 @@ impl Simulation {
     }
 
     fn changing(&self) -> PyResult<MutexGuard<'_, Cell>> {
-        if std::process::id() != self.process {
-            return Err(PyRuntimeError::new_err(
-                "the simulation was made in another process: its threads are not here. Make it in the \
-                 process that computes it; for many at a time use threads, as in the book, or the start \
-                 method `spawn`",
-            ));
-        }
         let mut cell = self.look()?;
         cell.change()?;
         Ok(cell)
@@ -185,12 +202,13 @@ impl Simulation {
 impl Simulation {
     #[new]
     fn of_scene(py: Python, scene: &Bound<Scene>, threads: Option<usize>) -> PyResult<Simulation> {
+        check_process()?;
+        let threads = pool(threads)?;
         let scene = scene.get();
         let own = scene.scene.clone();
-        let session = py
-            .detach(|| Session::new(own))
-            .map_err(|error| errors::scene(&error))?;
-        Simulation::new(session, &scene.laws, threads)
+        let session = py.detach(|| within(&threads, || Session::new(own)));
+        let session = session.map_err(|error| errors::scene(&error))?;
+        Ok(Simulation::new(session, &scene.laws, threads))
     }
 
     /// What [`Simulation::save`] has written.
@@ -203,12 +221,11 @@ impl Simulation {
     ) -> PyResult<Simulation> {
         let laws = Laws::new(laws)?;
         let given = laws.given();
-        let session = py.detach(|| Session::load(&path, &given));
-        Simulation::new(
-            session.map_err(|error| errors::session(&error))?,
-            &laws,
-            threads,
-        )
+        check_process()?;
+        let threads = pool(threads)?;
+        let session = py.detach(|| within(&threads, || Session::load(&path, &given)));
+        let session = session.map_err(|error| errors::session(&error))?;
+        Ok(Simulation::new(session, &laws, threads))
     }
 
     fn save(&self, py: Python, path: PathBuf) -> PyResult<()> {
@@ -225,10 +242,7 @@ impl Simulation {
         let cell = &mut *guard;
         cell.start = None;
         let threads = cell.threads.take();
-        let done = py.detach(|| match &threads {
-            Some(threads) => threads.install(|| cell.advance(steps, time, budget)),
-            None => cell.advance(steps, time, budget),
-        });
+        let done = py.detach(|| within(&threads, || cell.advance(steps, time, budget)));
         cell.threads = threads;
         let raised: Vec<PyErr> = cell.laws.iter().filter_map(|law| law.raised()).collect();
         let interrupted = cell.laws.iter().filter(|law| law.interrupted()).count() > 0;

@@ -44,7 +44,7 @@ def test_values_of_python_and_numpy(column: dict[str, Any]) -> None:
     assert read["gravity"] == [0.0, 0.0, -10.0]
     assert read["stages"] == [{"name": 'with "quotes"\n', "steps": 3}]
     column["title"] = object()
-    with pytest.raises(TypeError, match="title is a object, which a scene cannot hold"):
+    with pytest.raises(TypeError, match="title is of type object, which a scene cannot hold"):
         moldwarp.Scene(column)
 
 
@@ -107,6 +107,10 @@ def test_wrong_dicts_are_told_where_and_why(column: dict[str, Any], path: str, v
 def test_what_is_no_scene() -> None:
     with pytest.raises(TypeError, match="a file or keywords"):
         moldwarp.Scene("x.toml", gravity=[0, 0, 0])
+    with pytest.raises(TypeError, match="a path, a dict or keywords, not 3"):
+        moldwarp.Simulation(3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="needs a scene"):
+        moldwarp.Simulation(None)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="a dict or keywords"):
         moldwarp.Scene({}, gravity=[0, 0, 0])
     with pytest.raises(TypeError, match="keys of a scene are texts"):

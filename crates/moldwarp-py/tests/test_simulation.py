@@ -6,6 +6,7 @@ import csv
 import json
 import signal
 import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -295,6 +296,31 @@ def test_simulations_side_by_side(column: dict[str, Any]) -> None:
     assert together == [computed(nu) for nu in values]
     with pytest.raises(ValueError, match="number of threads"):
         moldwarp.Simulation(column, threads=0)
+
+
+FORKED = """
+import os, sys, moldwarp
+sim = moldwarp.Simulation(sys.argv[1])
+sim.step()
+child = os.fork()
+if child == 0:
+    for use in [sim.step, lambda: sim.particles.mass, lambda: moldwarp.Simulation(sys.argv[1], threads=1)]:
+        try:
+            use()
+            os._exit(1)
+        except RuntimeError as error:
+            if "forked" not in str(error):
+                os._exit(2)
+    os._exit(0)
+sim.step()
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+def test_a_forked_process_is_told_so(root: Path) -> None:
+    """It would wait for ever for threads that are not there."""
+    arguments = [sys.executable, "-c", FORKED, str(root / "examples/absorbing-column")]
+    assert subprocess.run(arguments, timeout=60, check=False).returncode == 0
 
 
 def test_progress_in_a_plain_line(column: dict[str, Any], capsys: pytest.CaptureFixture[str],

@@ -68,6 +68,8 @@ class Scene:
                 )
             self._scene = _moldwarp.Scene.load(source, sets)
         else:
+            if source is not None and not isinstance(source, Mapping):
+                raise TypeError(f"a scene is a path, a dict or keywords, not {source!r}")
             if source is not None and keys:
                 raise TypeError("a scene is a dict or keywords, not both")
             content = dict(keys if source is None else source)
@@ -166,6 +168,8 @@ def _set_value(value: Any) -> str:
 
 
 def to_scene(source: Scene | str | os.PathLike[str] | Mapping[str, Any]) -> Scene:
+    if source is None:
+        raise TypeError("a simulation needs a scene: a Scene, a path or a dict")
     return source if isinstance(source, Scene) else Scene(source)
 
 

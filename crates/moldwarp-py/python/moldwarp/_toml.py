@@ -97,4 +97,4 @@ def _value(value: Any, path: tuple[str, ...]) -> str:
     if isinstance(value, dict):
         inside = (f"{_key(key)} = {_value(item, (*path, key))}" for key, item in value.items())
         return "{ " + ", ".join(inside) + " }" if value else "{}"
-    raise TypeError(f"{'.'.join(path)} is a {type(value).__name__}, which a scene cannot hold: {value!r}")
+    raise TypeError(f"{'.'.join(path)} is of type {type(value).__name__}, which a scene cannot hold: {value!r}")

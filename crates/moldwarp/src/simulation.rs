@@ -13,9 +13,7 @@ use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{
-    Active, Answers, Cells, Grid, Guests, Node, Reference, Shared, TimeStepError,
-};
+use crate::step::{Active, Answers, Cells, Grid, Guests, Node, Reference, Shared, TimeStepError};
 use crate::stop::{SetupError, Stop};
 use crate::switches::Switches;
 

@@ -71,7 +71,10 @@ impl Simulation {
         self.profile.lap(Part::Remap);
         strain::run(self);
         self.profile.lap(Part::Strain);
-        stress::ask(self)?;
+        if let Err(stop) = stress::ask(self) {
+            self.guests_leave();
+            return Err(stop);
+        }
         let crushed = stress::run(self);
         self.profile.lap(Part::Stress);
         if crushed {

@@ -14,6 +14,7 @@ use crate::plan::{Plan, Smoothing};
 use crate::simulation::Simulation;
 use crate::step::TILES;
 use crate::stop::Stop;
+use rayon::prelude::*;
 
 /// What laws are asked and what they say, by the places of particles; kept so that no step allocates.
 /// Without laws all arrays are empty.
@@ -114,10 +115,12 @@ impl Answers {
         plan: &Plan,
         p: &Particles,
     ) -> Result<bool, String> {
-        let is_own = |body: u16| plan.bodies[usize::from(body)].material == m;
+        let is_own = |i: u32| plan.bodies[usize::from(p.body[i as usize])].material == m;
+        // Where a guest comes from lies a particle without mass, which is not asked for.
+        let is_there = |i: u32| p.mass[i as usize] > 0.0;
+        let ours = (0..p.len() as u32).filter(|&i| is_own(i));
         self.places.clear();
-        let places = (0..p.len() as u32).filter(|&i| is_own(p.body[i as usize]));
-        self.places.extend(places);
+        self.places.extend(ours.clone().filter(|&i| is_there(i)));
         if self.places.is_empty() {
             return Ok(false);
         }
@@ -164,24 +167,31 @@ impl Answers {
         let strains = part.plastic_strain.components();
         scatter(places, strains, all.plastic_strain.components_mut());
         scatter(places, part.state.components(), all.state.components_mut());
+        // It stays as it is.
+        for i in ours.filter(|&i| !is_there(i)) {
+            let i = i as usize;
+            all.stress.set(i, all.before.at(i));
+            all.state.set(i, p.state.at(i));
+            all.plastic_strain.set(i, [0.0; 6]);
+        }
         Ok(plastic)
     }
 }
 
 fn gather<const N: usize>(places: &[u32], from: [&[f64]; N], to: [&mut [f64]; N]) {
-    for (from, to) in from.into_iter().zip(to) {
+    from.into_par_iter().zip(to).for_each(|(from, to)| {
         for (x, &place) in to.iter_mut().zip(places) {
             *x = from[place as usize];
         }
-    }
+    });
 }
 
 fn scatter<const N: usize>(places: &[u32], from: [&[f64]; N], to: [&mut [f64]; N]) {
-    for (from, to) in from.into_iter().zip(to) {
+    from.into_par_iter().zip(to).for_each(|(from, to)| {
         for (x, &place) in from.iter().zip(places) {
             to[place as usize] = *x;
         }
-    }
+    });
 }
 
 /// Asks the laws of all external materials.

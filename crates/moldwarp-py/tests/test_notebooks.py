@@ -23,13 +23,25 @@ def test_each_notebook_is_executed() -> None:
     assert {path.stem for path in NOTEBOOKS.glob("*.ipynb")} == set(COARSE)
 
 
+def test_the_code_of_notebooks_has_right_types(tmp_path: Path) -> None:
+    nbformat = pytest.importorskip("nbformat")
+    api = pytest.importorskip("mypy.api")
+    for path in NOTEBOOKS.glob("*.ipynb"):
+        cells = nbformat.read(path, as_version=4).cells
+        code = "\n\n".join(cell.source for cell in cells if cell.cell_type == "code")
+        (tmp_path / f"{path.stem.replace('-', '_')}.py").write_text(code + "\n", encoding="utf-8")
+    config = NOTEBOOKS.parent / "pyproject.toml"
+    said, _, failed = api.run(["--strict", "--config-file", str(config), str(tmp_path)])
+    assert not failed, said
+
+
 @pytest.mark.parametrize("name", COARSE)
 def test_notebook(name: str) -> None:
     nbclient = pytest.importorskip("nbclient")
     import nbformat
 
     os.environ.setdefault("MPLBACKEND", "module://matplotlib_inline.backend_inline")
-    notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)  # type: ignore[no-untyped-call]
+    notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
     for cell in notebook.cells:
         assert not cell.get("outputs"), f"{name}.ipynb is kept without outputs"
         if "parameters" in cell.metadata.get("tags", []):

@@ -1,10 +1,12 @@
 """The compiled part of moldwarp."""
 
 import os
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
+
+__all__ = ["Lease", "Scene", "Simulation", "VERSION", "quantity"]
 
 _Floats = npt.NDArray[np.float64]
 _Ints = npt.NDArray[np.int64]
@@ -13,6 +15,7 @@ _Law = tuple[str, object, list[tuple[str, str]]]
 
 VERSION: str
 
+@final
 class Scene:
     text: str
     case: str
@@ -32,11 +35,13 @@ class Scene:
     ) -> Scene: ...
     def inherit(self, source: str, /) -> Scene: ...
 
+@final
 class Lease:
     over: bool
     def columns(self, name: str) -> tuple[npt.NDArray[Any], ...]: ...
     def end(self) -> None: ...
 
+@final
 class Simulation:
     state_fields: list[tuple[str, str, int, list[int]]]
     count: int
@@ -55,7 +60,7 @@ class Simulation:
     scene_hash: str
     state_hash: str
     rate: float
-    def __init__(self, scene: Scene, threads: int | None) -> None: ...
+    def __new__(cls, scene: Scene, threads: int | None) -> Simulation: ...
     @staticmethod
     def load(path: str | os.PathLike[str], laws: list[_Law], threads: int | None) -> Simulation: ...
     def save(self, path: str | os.PathLike[str]) -> None: ...

@@ -65,6 +65,14 @@ impl Lease {
     }
 }
 
+impl Drop for Lease {
+    /// A block that was entered by hand and never left ends here.
+    fn drop(&mut self) {
+        // Who cannot be asked now stays frozen, which is safe.
+        let _ = self.end();
+    }
+}
+
 #[pymethods]
 impl Lease {
     /// The components of an array, in the order of the solver, read-only and without a copy.
@@ -96,8 +104,9 @@ impl Lease {
 
     /// Ends it; again and again if one likes.
     fn end(&self) -> PyResult<()> {
+        let mut cell = self.simulation.get().look()?;
         if !self.over.swap(true, Ordering::AcqRel) {
-            self.simulation.get().look()?.frozen -= 1;
+            cell.frozen -= 1;
         }
         Ok(())
     }

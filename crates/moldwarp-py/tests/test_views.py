@@ -158,3 +158,14 @@ def test_an_error_in_the_block_ends_it(column: dict[str, Any]) -> None:
     with pytest.raises(ZeroDivisionError), sim.frozen() as particles:
         particles.mass.sum() / 0 if False else 1 / 0
     assert sim.run().finished
+
+
+def test_a_block_that_is_never_left_ends_with_its_last_view(column: dict[str, Any]) -> None:
+    sim = moldwarp.Simulation(column)
+    block = sim.frozen()
+    view = block.__enter__().mass
+    with pytest.raises(moldwarp.FrozenError):
+        sim.step()
+    del block, view
+    gc.collect()
+    sim.step()

@@ -17,6 +17,9 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, TryLockError};
 use std::time::{Duration, Instant};
 
+/// Name, unit, column and bodies of a state variable.
+type StateField = (String, String, usize, Vec<usize>);
+
 /// The state, and who looks at it.
 pub struct Cell {
     pub session: Session,
@@ -347,16 +350,14 @@ impl Simulation {
     /// Name, unit and number among the columns of `state` of each state variable, and the bodies that
     /// have it.
     #[getter]
-    fn state_fields(&self) -> PyResult<Vec<(String, String, usize, Vec<usize>)>> {
+    fn state_fields(&self) -> PyResult<Vec<StateField>> {
         let cell = self.look()?;
         let plan = cell.session.simulation().plan();
-        let mut all: Vec<(String, String, usize, Vec<usize>)> = Vec::new();
+        let mut all: Vec<StateField> = Vec::new();
         for (number, body) in plan.bodies.iter().enumerate() {
             let fields = plan.materials[body.material].model.state_fields();
             for (column, field) in fields.iter().enumerate() {
-                let same = |f: &&mut (String, String, usize, Vec<usize>)| {
-                    f.0 == field.name && f.2 == column
-                };
+                let same = |f: &&mut StateField| f.0 == field.name && f.2 == column;
                 match all.iter_mut().find(same) {
                     Some(known) => known.3.push(number),
                     None => all.push((field.name.into(), field.unit.into(), column, vec![number])),

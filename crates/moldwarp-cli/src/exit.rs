@@ -39,6 +39,7 @@ pub fn of_stop(stop: &Stop) -> Exit {
         | Stop::Degenerate { .. }
         | Stop::NotFinite { .. }
         | Stop::Crushed { .. }
+        | Stop::Law { .. }
         | Stop::Empty { .. }
         | Stop::Motion { .. }
         | Stop::NoRoom { .. }

@@ -309,9 +309,9 @@ impl Tiles {
 
     /// Room for more tiles.
     pub(crate) fn reserve(&mut self, tiles: usize) {
-        self.tiles.reserve_exact(tiles);
-        self.slots.reserve_exact(tiles * (DEEP as usize + 1));
-        self.helpers.reserve_exact(tiles);
+        self.tiles.reserve(tiles);
+        self.slots.reserve(tiles * (DEEP as usize + 1));
+        self.helpers.reserve(tiles);
     }
 
     /// Number of tiles.

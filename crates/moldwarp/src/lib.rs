@@ -7,6 +7,7 @@
 //! Conventions: SI units; tension positive; Voigt order xx, yy, zz, xy, yz, zx with engineering
 //! shear strains.
 
+mod access;
 mod bodies;
 pub mod boundary;
 pub mod contact;

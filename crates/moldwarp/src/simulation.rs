@@ -13,7 +13,7 @@ use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{Active, Cells, Grid, Guests, Node, Reference, Shared, TimeStepError};
+use crate::step::{Active, Answers, Cells, Grid, Guests, Node, Reference, Shared, TimeStepError};
 use crate::stop::{SetupError, Stop};
 use crate::switches::Switches;
 
@@ -73,6 +73,8 @@ pub struct Simulation {
     pub(crate) switches: Switches,
     pub(crate) watch: Watch,
     pub(crate) scale: Scale,
+    /// What external laws have said in this step.
+    pub(crate) answers: Answers,
     pub(crate) simd: Simd,
     pub(crate) profile: Profile,
     /// Nodes before the last renumbering and their keys, kept so that no step allocates.
@@ -133,6 +135,7 @@ impl Simulation {
             clock: Clock::default(),
             watch: Watch::default(),
             scale: Scale::default(),
+            answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),
             spare_nodes: Vec::new(),
@@ -161,6 +164,7 @@ impl Simulation {
             | Stop::Degenerate { .. }
             | Stop::Empty { .. }
             | Stop::Crushed { .. }
+            | Stop::Law { .. }
             | Stop::NotAtRest { .. } => {
                 unreachable!("nothing has moved yet")
             }

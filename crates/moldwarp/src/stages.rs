@@ -36,11 +36,12 @@ impl Simulation {
         let switched = switched || other_bodies;
         self.clock.new_constraints = switched && !first;
         if switched || first {
-            self.set_boundaries(first).map_err(|error| Stop::Motion {
-                error,
-                stage: self.plan.stages[self.clock.stage].name.clone(),
-                time: self.clock.time,
-            })?;
+            self.set_boundaries(first, false)
+                .map_err(|error| Stop::Motion {
+                    error,
+                    stage: self.plan.stages[self.clock.stage].name.clone(),
+                    time: self.clock.time,
+                })?;
         }
         if reset {
             self.particles.reset_displacements();
@@ -81,7 +82,8 @@ impl Simulation {
 
     /// Sets up the boundaries that are on. An absorbing one begins in equilibrium: with the reaction
     /// that has held its nodes, at the start of a run with that of the initial or inherited stress.
-    fn set_boundaries(&mut self, first: bool) -> Result<(), MotionError> {
+    /// `given` says that particles were given a stress.
+    pub(crate) fn set_boundaries(&mut self, first: bool, given: bool) -> Result<(), MotionError> {
         let boundaries: Vec<&Boundary> = (self.plan.boundaries.iter())
             .zip(&self.switches.boundaries)
             .filter(|b| *b.1)
@@ -96,7 +98,8 @@ impl Simulation {
         let walls = walls(&self.plan.mesh, &boundaries);
         let outflow = Outflow::new(&self.plan.mesh, &boundaries);
         let before = std::mem::take(&mut self.absorbing);
-        let stressed = self.plan.initial_stress.is_some() || !self.plan.inherited.is_empty();
+        let stressed =
+            given || self.plan.initial_stress.is_some() || !self.plan.inherited.is_empty();
         if first && stressed {
             self.gravity = self.plan.gravity * self.switches.gravity(0.0);
             let unheld = crate::step::unheld(self);

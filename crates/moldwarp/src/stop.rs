@@ -123,6 +123,13 @@ pub enum Stop {
         stage: String,
         time: f64,
     },
+    #[error("material `{material}` {problem}, {time:e} s after the start in stage `{stage}`")]
+    Law {
+        material: String,
+        problem: String,
+        stage: String,
+        time: f64,
+    },
     #[error(
         "all material has left through outflow surfaces, {time:e} s after the start in stage `{stage}`: \
          end the stage earlier"

@@ -5,10 +5,14 @@ use super::source::{Entry, enum_named, struct_named};
 use crate::output::vtu::Data;
 use crate::run::{FIRST, Field, NODE_FIELDS, OfParticles, PARTICLE_FIELDS};
 use moldwarp::NodeFields;
-use moldwarp::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParameters, StateField};
+use moldwarp::material::{
+    External, Increments, Law, LinearElastic, Material, MohrCoulomb, MohrCoulombParameters,
+    StateField,
+};
 use moldwarp::measure::Energies;
 use moldwarp::particles::Particles;
 use moldwarp::plan::Contact;
+use std::sync::Arc;
 
 const SUMMARY: &str = "crates/moldwarp-io/src/output/summary.rs";
 
@@ -72,8 +76,22 @@ fn shape(data: Data) -> &'static str {
     }
 }
 
+/// A law that says nothing: what state variables an external one has is its own affair.
+#[derive(Debug)]
+struct Nothing;
+
+impl Law for Nothing {
+    fn update(&self, _: Increments) -> Result<(), String> {
+        Err("says nothing".into())
+    }
+
+    fn state_fields(&self) -> &'static [StateField] {
+        &[]
+    }
+}
+
 /// A material of every model.
-fn materials() -> [Material; 3] {
+fn materials() -> [Material; 4] {
     let elastic = LinearElastic {
         young_modulus: 1.0,
         poisson_ratio: 0.0,
@@ -89,6 +107,10 @@ fn materials() -> [Material; 3] {
         Material::LinearElastic(elastic),
         Material::MohrCoulomb(soil),
         Material::Rigid,
+        Material::External(External {
+            elastic,
+            law: Arc::new(Nothing),
+        }),
     ]
 }
 
@@ -101,6 +123,7 @@ fn state_variables() -> Vec<(StateField, Vec<&'static str>)> {
             Material::LinearElastic(_) => "linear-elastic",
             Material::MohrCoulomb(_) => "mohr-coulomb",
             Material::Rigid => "rigid",
+            Material::External(_) => "external",
         };
         for field in material.state_fields() {
             match found.iter_mut().find(|f| f.0.name == field.name) {

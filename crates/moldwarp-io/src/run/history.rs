@@ -96,6 +96,15 @@ pub(crate) fn columns(sim: &Simulation) -> Vec<(String, String)> {
         .collect()
 }
 
+/// The values of all columns now.
+pub(super) fn row(sim: &Simulation, out: &mut Vec<f64>) {
+    out.clear();
+    out.extend(FIRST.iter().map(|c| (c.value)(sim)));
+    whole::probe_values(sim, out);
+    whole::contact_values(sim, out);
+    out.extend(whole::energies(sim).values());
+}
+
 /// An expected history and the values to be compared with it.
 #[derive(Debug)]
 pub(crate) struct Expected {
@@ -243,11 +252,7 @@ impl History {
 
     /// Adds the simulation as it is now.
     pub fn write(&mut self, sim: &Simulation) -> Result<(), FileError> {
-        self.row.clear();
-        self.row.extend(FIRST.iter().map(|c| (c.value)(sim)));
-        whole::probe_values(sim, &mut self.row);
-        whole::contact_values(sim, &mut self.row);
-        self.row.extend(whole::energies(sim).values());
+        row(sim, &mut self.row);
         for expected in &mut self.expected {
             expected.seen.push((sim.time(), self.row[expected.column]));
         }

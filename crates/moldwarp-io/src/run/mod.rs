@@ -8,6 +8,7 @@ mod log;
 mod recorder;
 mod resume;
 mod schedule;
+mod session;
 mod stage_files;
 mod state;
 mod steps;
@@ -17,6 +18,7 @@ mod whole;
 pub use checkpoint::CheckpointError;
 pub use interrupt::Interrupt;
 pub use resume::{read_checkpoint, resume};
+pub use session::{Session, SessionError};
 pub use state::state_hash;
 
 pub(crate) use checkpoint::{checkpoint_bytes, facts as checkpoint_facts};

@@ -175,7 +175,7 @@ impl Recorder {
 }
 
 /// Output times of a run that ends at `end`, s; none if no output is wanted.
-fn schedule(every: Every, end: f64) -> Option<Schedule> {
+pub(super) fn schedule(every: Every, end: f64) -> Option<Schedule> {
     match every {
         Every::Count(0) => None,
         Every::Count(count) => Some(Schedule::every(end / f64::from(count))),

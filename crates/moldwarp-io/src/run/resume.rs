@@ -7,7 +7,7 @@ use super::recorder::Recorder;
 use super::steps::{Books, end_time};
 use super::{CheckpointError, Observer, Outcome, RunError, RunOptions, conclude};
 use crate::output::{FileError, Folder, write_whole};
-use crate::scene::{Kept, OutputSettings, Scene, SceneError, check_end, kept};
+use crate::scene::{Given, Kept, OutputSettings, Scene, SceneError, check_end, kept};
 use moldwarp::{Mesh, Plan, Simulation};
 use std::io::Write;
 use std::path::Path;
@@ -36,6 +36,7 @@ fn scene(
         text: &checkpoint.beginning.text,
         case: &checkpoint.beginning.case,
         mesh,
+        given: Given::default(),
     };
     kept(of_run, path, sets, checkpoint.stage)
 }

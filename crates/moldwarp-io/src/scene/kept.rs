@@ -2,7 +2,7 @@
 
 use super::error::{Fault, SceneError};
 use super::output::{OutputSettings, output};
-use super::{Scene, check, overrides, syntax};
+use super::{Given, Scene, check, overrides, syntax};
 use moldwarp::plan::Until;
 use moldwarp::{Mesh, Simulation};
 use std::path::Path;
@@ -15,6 +15,8 @@ pub(crate) struct Kept<'a> {
     pub case: &'a str,
     /// As the run began.
     pub mesh: Mesh,
+    /// What a program has given to it, and gives again.
+    pub given: Given,
 }
 
 const WHAT_MAY_CHANGE: &str = "of a run that is resumed `--set` may change the `duration` and `steps` of \
@@ -43,8 +45,8 @@ pub(crate) fn kept(
         name += " with --set";
     }
     let (case, folder) = (kept.case.to_owned(), out.to_owned());
-    let read =
-        syntax::parse(&text).and_then(|raw| check(&raw, case, folder, &text, Some(kept.mesh)));
+    let read = syntax::parse(&text)
+        .and_then(|raw| check(&raw, case, folder, &text, (&kept.given, Some(kept.mesh))));
     match read {
         Ok(mut scene) => {
             scene.origin.name = name;

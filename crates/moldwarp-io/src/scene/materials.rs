@@ -2,11 +2,12 @@
 
 use super::amount::Named;
 use super::error::Fault;
+use super::given::Given;
 use super::quantity::Dimension;
 use super::raw::{RawMaterial, Text};
 use super::values::{amount, choose, exactly_one, foreign, placed, positive, required, span};
 use moldwarp::material::{
-    LinearElastic, Material, MohrCoulomb, MohrCoulombParameters, ParameterError,
+    External, LinearElastic, Material, MohrCoulomb, MohrCoulombParameters, ParameterError,
 };
 use moldwarp::plan::NamedMaterial;
 use std::ops::Range;
@@ -14,13 +15,16 @@ use std::ops::Range;
 /// What a unit weight is divided by, whatever the scene's gravity is, m/s².
 const STANDARD_GRAVITY: f64 = 9.81;
 
-pub(super) fn materials(raw: &Named<RawMaterial>) -> Result<Vec<NamedMaterial>, Fault> {
+pub(super) fn materials(
+    raw: &Named<RawMaterial>,
+    given: &Given,
+) -> Result<Vec<NamedMaterial>, Fault> {
     raw.0
         .iter()
         .map(|(name, raw)| {
             Ok(NamedMaterial {
                 name: name.get_ref().clone(),
-                model: model(name, raw)?,
+                model: model(name, raw, given)?,
                 density: density(name, raw)?,
             })
         })
@@ -38,13 +42,18 @@ enum Model {
     MohrCoulomb,
     /// Bodies move as one, without turning; see [rigid bodies](../theory/method.md#rigid-bodies).
     Rigid,
+    /// A law that the program gives which runs the scene, as from
+    /// [Python](../python.md#a-material-of-your-own); the command has none to give. The elastic constants
+    /// set the stable step: the law must never be stiffer.
+    External,
 }
 
-fn model(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
+fn model(name: &Text, raw: &RawMaterial, given: &Given) -> Result<Material, Fault> {
     let models = [
         ("linear-elastic", Model::LinearElastic),
         ("mohr-coulomb", Model::MohrCoulomb),
         ("rigid", Model::Rigid),
+        ("external", Model::External),
     ];
     let plastic = [
         ("cohesion", span(&raw.cohesion)),
@@ -67,7 +76,30 @@ fn model(name: &Text, raw: &RawMaterial) -> Result<Material, Fault> {
             foreign(&raw.model, &plastic)?;
             Ok(Material::Rigid)
         }
+        Model::External => {
+            foreign(&raw.model, &plastic)?;
+            let elastic = elastic((name.span(), "an external material"), raw)?;
+            match given.laws.get(name.get_ref()) {
+                Some(law) => Ok(Material::External(External {
+                    elastic,
+                    law: law.clone(),
+                })),
+                None => Err(no_law(name, raw)),
+            }
+        }
     }
+}
+
+fn no_law(name: &Text, raw: &RawMaterial) -> Fault {
+    Fault::new(format!(
+        "material `{}` is external, and nobody has given its law",
+        name.get_ref()
+    ))
+    .at(raw.model.span(), "no law")
+    .help(
+        "the law is a program's: run the scene from it, as from Python; the command computes the \
+         other models",
+    )
 }
 
 fn elastic(owner: (Range<usize>, &str), raw: &RawMaterial) -> Result<LinearElastic, Fault> {

@@ -3,10 +3,13 @@
 use super::amount::Spanned;
 use super::cylinder::cylinder;
 use super::error::Fault;
+use super::given::Given;
 use super::quantity::{self, Dimension};
 use super::raw::{RawBox, RawMesh, RawRevolve, Text};
 use super::values::{exactly_one, positive, span, three, vector};
-use crate::mesh::{MeshFileError, check_overlap, explain_mesh_error, read_gmsh, read_plane_gmsh};
+use crate::mesh::{
+    MeshFile, MeshFileError, check_overlap, explain_mesh_error, read_gmsh, read_plane_gmsh,
+};
 use moldwarp::Mesh;
 use moldwarp::mesh::box_mesh;
 use std::path::Path;
@@ -18,7 +21,7 @@ pub(super) const MOST_CELLS: u64 = 4_000_000;
 /// to say goes to `notes`.
 pub(super) fn mesh(
     raw: &Spanned<RawMesh>,
-    folder: &Path,
+    (folder, given): (&Path, &Given),
     notes: &mut Vec<String>,
 ) -> Result<(Mesh, Vec<u64>), Fault> {
     let place = raw.span();
@@ -41,7 +44,7 @@ pub(super) fn mesh(
             let scale = unit.as_ref().map_or(Ok(1.0), length_unit)?;
             return match &raw.revolve {
                 Some(revolve) => revolved(file, scale, revolve, folder, notes),
-                None => from_file(file, scale, folder, notes),
+                None => from_file(file, scale, (folder, given), notes),
             };
         }
         (None, Some(unit)) => {
@@ -99,11 +102,20 @@ pub(super) fn has_volumes(mesh: &Mesh) -> bool {
 fn from_file(
     file: &Text,
     scale: f64,
-    folder: &Path,
+    (folder, given): (&Path, &Given),
     notes: &mut Vec<String>,
 ) -> Result<(Mesh, Vec<u64>), Fault> {
     let path = folder.join(file.get_ref());
-    let mut read = read_gmsh(&path).map_err(|e| unreadable(e, file, &path))?;
+    let mut read = match given.meshes.get(file.get_ref()) {
+        Some(raw) => MeshFile {
+            raw: raw.clone(),
+            // Arrays are counted from 0.
+            node_tags: (0..raw.nodes.len() as u64).collect(),
+            element_tags: (0..raw.tets.len() as u64).collect(),
+            notes: Vec::new(),
+        },
+        None => read_gmsh(&path).map_err(|e| unreadable(e, file, &path))?,
+    };
     for x in &mut read.raw.nodes {
         *x *= scale;
     }

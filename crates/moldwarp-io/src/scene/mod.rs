@@ -13,6 +13,7 @@ mod document;
 mod earlier;
 mod error;
 mod functions;
+mod given;
 mod initial_stress;
 mod kept;
 mod loads;
@@ -41,6 +42,7 @@ mod values;
 pub use earlier::{Earlier, inherit};
 pub(crate) use error::Fault;
 pub use error::SceneError;
+pub use given::Given;
 pub(crate) use kept::{Kept, check_end, kept};
 pub(crate) use origin::Origin;
 pub(crate) use outline::{Outline, Part};
@@ -58,7 +60,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// A scene, read and checked.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Scene {
     /// What is computed, in SI units.
     pub plan: Plan,
@@ -124,7 +126,7 @@ pub fn load_varied(path: &Path, sets: &[String], varied: &[String]) -> Result<Sc
         (true, false) => " with --vary",
         (false, false) => " with --set and --vary",
     };
-    read(&file, name, &text, overrides)
+    read(&file, name, &text, overrides, &Given::default())
 }
 
 /// Reads a scene from memory; `file` is its name, and paths are relative to its folder.
@@ -133,7 +135,27 @@ pub fn load_varied(path: &Path, sets: &[String], varied: &[String]) -> Result<Sc
 ///
 /// As for [`load`].
 pub fn parse(file: &Path, text: &str) -> Result<Scene, SceneError> {
-    read(file, file.display().to_string(), text, Vec::new())
+    parse_with(file, text, &[], &Given::default())
+}
+
+/// The same, with changes `sets` as for [`load`], of a text to which a program gives something.
+///
+/// # Errors
+///
+/// As for [`load`].
+pub fn parse_with(
+    file: &Path,
+    text: &str,
+    sets: &[String],
+    given: &Given,
+) -> Result<Scene, SceneError> {
+    let mut name = file.display().to_string();
+    let (text, overrides) =
+        overrides::apply(text, sets, &[]).map_err(|fault| fault.in_file(&name, text))?;
+    if !sets.is_empty() {
+        name += " with --set";
+    }
+    read(file, name, &text, overrides, given)
 }
 
 fn read(
@@ -141,13 +163,15 @@ fn read(
     name: String,
     text: &str,
     overrides: Vec<overrides::Override>,
+    given: &Given,
 ) -> Result<Scene, SceneError> {
     let start = Instant::now();
     let folder = match file.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),
     };
-    let read = syntax::parse(text).and_then(|raw| check(&raw, case(file), folder, text, None));
+    let read =
+        syntax::parse(text).and_then(|raw| check(&raw, case(file), folder, text, (given, None)));
     match read {
         Ok(mut scene) => {
             scene.origin.name = name;
@@ -218,17 +242,17 @@ fn check(
     case: String,
     folder: PathBuf,
     text: &str,
-    kept: Option<Mesh>,
+    (given, kept): (&Given, Option<Mesh>),
 ) -> Result<Scene, Fault> {
     let mut notes = Vec::new();
     let files = kept.is_none().then_some(&*folder);
     let gravity = values::vector("gravity", &raw.gravity, Dimension::Acceleration)?;
     let numerics = numerics::numerics(&raw.numerics)?;
     let output = output::output(&raw.output)?;
-    let materials = materials::materials(&raw.materials)?;
+    let materials = materials::materials(&raw.materials, given)?;
     let (mesh, element_tags) = match kept {
         Some(mesh) => (mesh, Vec::new()),
-        None => mesh::mesh(&raw.mesh, &folder, &mut notes)?,
+        None => mesh::mesh(&raw.mesh, (&folder, given), &mut notes)?,
     };
     let symmetry = symmetry::symmetry(raw, &mesh, gravity, &mut notes)?;
     let bodies = bodies::bodies(&raw.bodies, &mesh, &materials)?;

@@ -8,7 +8,7 @@ use moldwarp::step::TimeStepError;
 use std::ops::Range;
 
 /// Where a scene came from.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Origin {
     /// Its name in messages.
     pub(super) name: String,

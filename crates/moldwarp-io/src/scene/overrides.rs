@@ -14,7 +14,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use toml_edit::{DocumentMut, Item, Key, Value};
 
 /// One `--set`, or one value of a `--vary`, applied.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Override {
     /// As the user wrote it, with the option.
     entry: String,

@@ -193,12 +193,12 @@ pub(super) struct RawMaterial {
     /// type: words of materials::Model
     pub model: Text,
     /// Young's modulus E.
-    /// for: linear-elastic, mohr-coulomb
+    /// for: linear-elastic, mohr-coulomb, external
     /// type: stress > 0
     /// default: required
     pub young_modulus: Option<RawAmount>,
     /// Poisson's ratio ν.
-    /// for: linear-elastic, mohr-coulomb
+    /// for: linear-elastic, mohr-coulomb, external
     /// type: number, −1 < ν < 0.5
     /// default: required
     pub poisson_ratio: Option<RawAmount>,

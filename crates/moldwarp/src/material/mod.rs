@@ -1,8 +1,10 @@
 //! Constitutive models. One file a model: equations, source, update, wave speed, tests.
 
+mod external;
 mod linear_elastic;
 mod mohr_coulomb;
 
+pub use external::{External, Increments, Law};
 pub use linear_elastic::LinearElastic;
 pub use mohr_coulomb::{
     MohrCoulomb, MohrCoulombParameters, MohrCoulombState, ParameterError, PlasticStep, YieldState,
@@ -70,6 +72,8 @@ pub enum Material {
     MohrCoulomb(MohrCoulomb),
     /// The body moves as one, without turning (`contact/rigid.rs`).
     Rigid,
+    /// By a law of whoever uses the solver, which is asked for all particles at once.
+    External(External),
 }
 
 /// A rigid body has no waves and takes up no strain.
@@ -92,6 +96,7 @@ impl Material {
                 stress: [0.0; 6],
                 plastic_strain: [0.0; 6],
             },
+            Material::External(_) => unreachable!("a law is asked for all particles at once"),
         }
     }
 
@@ -99,7 +104,7 @@ impl Material {
     pub fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
         match self {
             Material::MohrCoulomb(soil) => soil.update_lanes(simd, s, lanes),
-            Material::LinearElastic(_) | Material::Rigid => {
+            Material::LinearElastic(_) | Material::Rigid | Material::External(_) => {
                 s.plastic = false;
                 for l in 0..lanes {
                     let mut state = get(&s.state, l);
@@ -117,6 +122,7 @@ impl Material {
     pub fn state_fields(&self) -> &'static [StateField] {
         match self {
             Material::LinearElastic(_) | Material::Rigid => &[],
+            Material::External(own) => own.law.state_fields(),
             Material::MohrCoulomb(_) => &mohr_coulomb::STATE_FIELDS,
         }
     }
@@ -125,7 +131,7 @@ impl Material {
     /// where the material never does.
     pub fn opening(&self) -> Option<usize> {
         match self {
-            Material::LinearElastic(_) | Material::Rigid => None,
+            Material::LinearElastic(_) | Material::Rigid | Material::External(_) => None,
             Material::MohrCoulomb(_) => Some(mohr_coulomb::OPENING),
         }
     }
@@ -134,7 +140,7 @@ impl Material {
     #[inline]
     pub fn solid_share(&self, state: &State) -> f64 {
         match self {
-            Material::LinearElastic(_) | Material::Rigid => 1.0,
+            Material::LinearElastic(_) | Material::Rigid | Material::External(_) => 1.0,
             Material::MohrCoulomb(_) => mohr_coulomb::solid_share(state),
         }
     }
@@ -144,7 +150,7 @@ impl Material {
     #[inline]
     pub fn is_separated(&self, stress: &Voigt, state: &State) -> bool {
         match self {
-            Material::LinearElastic(_) | Material::Rigid => false,
+            Material::LinearElastic(_) | Material::Rigid | Material::External(_) => false,
             Material::MohrCoulomb(_) => mohr_coulomb::is_separated(stress, state),
         }
     }
@@ -152,11 +158,19 @@ impl Material {
     /// Whether a stress (Pa) is beyond the strength, by more than round-off.
     pub fn yields(&self, stress: &Voigt) -> bool {
         match self {
-            Material::LinearElastic(_) | Material::Rigid => false,
+            Material::LinearElastic(_) | Material::Rigid | Material::External(_) => false,
             Material::MohrCoulomb(soil) => {
                 let size = stress.iter().fold(0.0f64, |m, s| m.max(s.abs()));
                 soil.yield_function(stress) > 1e-9 * size
             }
+        }
+    }
+
+    /// The law that has to be asked for all particles at once, if it is such a material.
+    pub fn external(&self) -> Option<&External> {
+        match self {
+            Material::External(own) => Some(own),
+            _ => None,
         }
     }
 
@@ -171,6 +185,7 @@ impl Material {
             Material::LinearElastic(elastic) => elastic,
             Material::MohrCoulomb(soil) => soil.elastic(),
             Material::Rigid => &NOTHING,
+            Material::External(own) => &own.elastic,
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::particles::{Order, Particles};
 use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::stages::moduli;
-use crate::step::{Active, Cells, Guests, Node, Shared};
+use crate::step::{Active, Answers, Cells, Guests, Node, Shared};
 
 /// Time in s and number of steps of a state that [`Simulation::save`] has handed out.
 ///
@@ -68,6 +68,7 @@ impl Simulation {
             switches,
             watch,
             scale,
+            answers: _,
             simd: _,
             profile: _,
             spare_nodes: _,
@@ -161,6 +162,7 @@ impl Simulation {
             switches: from.load("switches")?,
             watch: from.load("watch")?,
             scale: from.load("scale")?,
+            answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),
             spare_nodes: Vec::new(),

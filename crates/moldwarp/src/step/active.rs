@@ -223,11 +223,11 @@ impl Active {
     pub fn make_room(&mut self, tiles: usize) {
         let lanes = tiles * LANES;
         self.tiles.reserve(tiles);
-        self.elements.reserve_exact(lanes);
-        self.cell_nodes.reserve_exact(lanes);
-        self.is_cell.reserve_exact(lanes);
-        self.fields.reserve_exact(lanes);
-        self.ranks.reserve_exact(lanes);
+        self.elements.reserve(lanes);
+        self.cell_nodes.reserve(lanes);
+        self.is_cell.reserve(lanes);
+        self.fields.reserve(lanes);
+        self.ranks.reserve(lanes);
     }
 
     /// Lays out guests behind the others: cells that they are in and how many each has. `put` is told the

@@ -69,7 +69,7 @@ impl Portions {
     /// Room for two more portions of so many nodes.
     pub fn make_room(&mut self, nodes: usize) {
         self.windows.reserve(2);
-        self.numbers.reserve_exact(2 * nodes * MOST);
+        self.numbers.reserve(2 * nodes * MOST);
     }
 
     /// To be split at portions, with other things kept by tile: what nodes are given N numbers of.

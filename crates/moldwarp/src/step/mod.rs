@@ -48,6 +48,7 @@ pub(crate) use reference::Reference;
 pub(crate) use state::{
     CellForce, CellPairs, CellStrain, CellStress, CellSums, Cells, Node, Shared,
 };
+pub(crate) use stress::Answers;
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
 
@@ -70,6 +71,10 @@ impl Simulation {
         self.profile.lap(Part::Remap);
         strain::run(self);
         self.profile.lap(Part::Strain);
+        if let Err(stop) = stress::ask(self) {
+            self.guests_leave();
+            return Err(stop);
+        }
         let crushed = stress::run(self);
         self.profile.lap(Part::Stress);
         if crushed {

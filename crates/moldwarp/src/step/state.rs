@@ -226,12 +226,12 @@ impl Cells {
 
     /// Room for guests. A portion of theirs may have all nodes.
     pub(crate) fn make_room(&mut self, tiles: usize, nodes: usize) {
-        self.shapes.reserve_exact(tiles);
-        self.sums.reserve_exact(tiles);
-        self.pairs.reserve_exact(tiles);
-        self.stresses.reserve_exact(tiles);
-        self.forces.reserve_exact(tiles);
-        self.strains.reserve_exact(tiles);
+        self.shapes.reserve(tiles);
+        self.sums.reserve(tiles);
+        self.pairs.reserve(tiles);
+        self.stresses.reserve(tiles);
+        self.forces.reserve(tiles);
+        self.strains.reserve(tiles);
         self.portions.make_room(nodes);
     }
 

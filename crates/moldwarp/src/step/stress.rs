@@ -1,5 +1,10 @@
 //! Stage 6: stresses and volumes of particles.
 
+mod external;
+
+pub(crate) use external::Answers;
+pub(super) use external::ask;
+
 use super::{CellStrain, TILES, smoothing};
 use crate::Mat3;
 use crate::lanes::{
@@ -49,9 +54,11 @@ pub(super) fn run(sim: &mut Simulation) -> bool {
         cells,
         ledger,
         simd,
+        answers,
         ..
     } = sim;
     let (active, shared, strains, simd) = (&*active, &*shared, &cells.strains[..], *simd);
+    let answers = &*answers;
     let body = &particles.body;
     let (materials, bodies) = (&plan.materials, &plan.bodies);
     let model = |body: u16| &materials[bodies[usize::from(body)].material].model;
@@ -80,11 +87,11 @@ pub(super) fn run(sim: &mut Simulation) -> bool {
             }
             deform(simd, own, &mut side);
             for slot in tile.slots() {
-                let (start, lanes) = (slot.start - first, slot.len());
+                let (start, place, lanes) = (slot.start - first, slot.start, slot.len());
                 let body = &body[slot];
                 points.look_up(body, model, &arrays, start);
                 strain(simd, own, &side, &mut points, &arrays, start, lanes);
-                points.update(simd, body, model);
+                points.update(simd, body, model, (answers, place));
                 book(simd, own, &side, &mut points, &mut works, &mut least, lanes);
                 keep(simd, &points, &mut arrays, start, lanes);
             }
@@ -142,17 +149,27 @@ impl Points {
     }
 
     /// New stresses, where materials meet one material after the other.
-    fn update<'m>(&mut self, simd: lanes::Simd, body: &[u16], model: impl Fn(u16) -> &'m Material) {
+    fn update<'m>(
+        &mut self,
+        simd: lanes::Simd,
+        body: &[u16],
+        model: impl Fn(u16) -> &'m Material,
+        (answers, place): (&Answers, usize),
+    ) {
         let (first, lanes) = (body[0], body.len());
+        let update = |model: &Material, all: &mut Strained| match model {
+            Material::External(_) => answers.give(all, place, lanes),
+            _ => model.update_lanes(simd, all, lanes),
+        };
         if body.iter().all(|&b| b == first) {
-            return model(first).update_lanes(simd, &mut self.increment, lanes);
+            return update(model(first), &mut self.increment);
         }
         let before = self.increment.clone();
         let mut done = [false; LANES];
         self.increment.plastic = true;
         while let Some(next) = (0..lanes).find(|&l| !done[l]) {
             let mut all = before.clone();
-            model(body[next]).update_lanes(simd, &mut all, lanes);
+            update(model(body[next]), &mut all);
             for l in (0..lanes).filter(|&l| body[l] == body[next]) {
                 set(&mut self.increment.stress, l, get(&all.stress, l));
                 set(&mut self.increment.state, l, get(&all.state, l));

@@ -77,12 +77,18 @@ def verdict(row):
 
 
 def markdown(rows):
-    lines = ["| case | results | made at commit | of | code changed since |", "|---|---|---|---|---|"]
+    """A row a case; the two kinds of results side by side."""
+    cases = {}
     for row in rows:
-        case = f"[{row['case']}](#{row['case']})"
-        lines.append(
-            f"| {case} | {row['fidelity']} | {row['commit']} | {row['date']} | {verdict(row)} |"
-        )
+        made = f"{row['commit']} ({row['date'].replace('-', '&#8209;')})"
+        cases.setdefault(row["case"], {})[row["fidelity"]] = f"{made} | {verdict(row)}"
+    lines = [
+        "| case | fine: made at | code changed since | coarse: made at | code changed since |",
+        "|---|---|---|---|---|",
+    ]
+    for case, kinds in cases.items():
+        both = [kinds.get(fidelity, "– | –") for fidelity in ["fine", "coarse"]]
+        lines.append(f"| [{case}](#{case}) | {both[0]} | {both[1]} |")
     head = git("log", "-1", "--format=%h of %cs", "--abbrev=7") or "an unknown commit"
     return "\n".join([*lines, "", f"(As of {head}.)"])
 

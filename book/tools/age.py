@@ -52,7 +52,9 @@ def age(case, sources, folder, root=None):
                     commit = row["commit"].rstrip("+")
                     changed = row["commit"].endswith("+")
     commit = commit or git("log", "-1", "--format=%h", "--abbrev=7", "--", table, root=root)
-    date = commit and git("show", "-s", "--format=%cs", commit, root=root)
+    # Where history is cut off, its last commit seems to have brought everything.
+    whole = git("rev-parse", "--is-shallow-repository", root=root) == "false"
+    date = whole and commit and git("show", "-s", "--format=%cs", commit, root=root)
     if not date:
         return {"case": case, "commit": commit or "–", "date": "–", "since": None, "changed": changed}
     since = git("rev-list", "--count", f"{commit}..HEAD", "--", *SHARED, *sources, root=root)
@@ -69,7 +71,7 @@ def ages(root=None):
 
 def verdict(row):
     if row["since"] is None:
-        return "not known: the history of the repository does not have this commit"
+        return "not known: this clone does not have the history"
     changed = "made by code that was not committed; " if row["changed"] else ""
     if row["since"] == 0:
         return changed + "no" if not changed else changed + "nothing committed since"

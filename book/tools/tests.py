@@ -120,6 +120,15 @@ class Ages(unittest.TestCase):
         write(self.root, "validation/results/fine/made.csv", "case,commit\ncol,1234567\n")
         self.assertIn("not known", self.verdict())
 
+    def test_a_shallow_clone_does_not_make_results_young(self):
+        write(self.root, "crates/moldwarp/src/lib.rs", "2")
+        self.commit("solver")
+        with tempfile.TemporaryDirectory() as folder:
+            clone = Path(folder).resolve() / "clone"
+            self.git("clone", "-q", "--depth", "1", self.root.as_uri(), str(clone))
+            (row,) = age.ages(clone)
+            self.assertIn("not known", age.verdict(row))
+
     def test_all_cases_of_the_chapter_have_their_files(self):
         found = dict(age.cases())
         self.assertGreater(len(found), 20)

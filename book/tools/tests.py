@@ -12,6 +12,7 @@ import age
 import links
 import mathematics
 import quickstart
+import quotes
 
 
 def write(root, name, text):
@@ -64,6 +65,18 @@ class QuickStart(unittest.TestCase):
         script = quickstart.script(page)
         self.assertTrue(script.endswith("\n# One\na\nb\n\n# Two\nc\n"))
         self.assertNotIn("no\n", script.removeprefix(quickstart.HEAD))
+
+
+class Quotes(unittest.TestCase):
+    def test_what_no_scene_says_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder).resolve()
+            write(root, "examples/case/scene.toml", "version = 1\n\n[mesh]\nfile = \"a.msh\"\n")
+            page = root / "book/src/tutorials/case.md"
+            write(root, page, "# C\n\n```toml\n[mesh]\nfile = \"a.msh\"\n```\n")
+            self.assertEqual(list(quotes.faults(root)), [])
+            write(root, page, "# C\n\n```toml\nversion = 1\n\n[mesh]\nfile = \"b.msh\"\n```\n")
+            self.assertEqual(len(list(quotes.faults(root))), 1)
 
 
 class Ages(unittest.TestCase):

@@ -7,7 +7,6 @@ use super::raw::{RawContact, Text, Texts};
 use super::surfaces::unique;
 use super::values::{choose, find, fits_a_column, not_negative, placed};
 use moldwarp::contact::{ContactError, Fields};
-use moldwarp::material::Material;
 use moldwarp::plan::{Body, Contact, ContactSurface, NamedMaterial, Stage};
 use std::ops::Range;
 

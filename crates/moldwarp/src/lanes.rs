@@ -9,13 +9,51 @@
 //! bits with any instruction set.
 
 use crate::parallel::Split;
-use std::ops::Range;
+use std::ops::{Deref, DerefMut, Range};
 
 /// Lanes of a window.
 pub const LANES: usize = 32;
 
-/// A number for each lane.
-pub type Lane = [f64; LANES];
+/// A number for each lane. (Aligned: vectors that lie across two lines of the cache take several times as long.)
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
+pub struct Lane([f64; LANES]);
+
+impl Lane {
+    /// The same number for all.
+    pub const fn of(number: f64) -> Lane {
+        Lane([number; LANES])
+    }
+}
+
+impl Deref for Lane {
+    type Target = [f64; LANES];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f64; LANES] {
+        &self.0
+    }
+}
+
+impl DerefMut for Lane {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64; LANES] {
+        &mut self.0
+    }
+}
+
+impl From<[f64; LANES]> for Lane {
+    fn from(numbers: [f64; LANES]) -> Lane {
+        Lane(numbers)
+    }
+}
+
+impl Default for Lane {
+    fn default() -> Lane {
+        Lane::of(0.0)
+    }
+}
+
 /// A symmetric tensor for each lane, component by component.
 pub type VoigtLanes = [Lane; 6];
 
@@ -168,13 +206,38 @@ impl Tiles {
     pub(crate) fn rebuild(
         &mut self,
         cells: impl Iterator<Item = (u32, u32)>,
-        mut lane: impl FnMut(Option<Pile>),
-        mut put: impl FnMut(u32, u32),
+        lane: impl FnMut(Option<Pile>),
+        put: impl FnMut(u32, u32),
     ) {
         self.tiles.clear();
         self.slots.clear();
         self.helpers.clear();
-        let mut place = 0;
+        self.append(0, cells, lane, put);
+    }
+
+    /// Puts others in the place of all tiles but the first ones.
+    pub(crate) fn replace(
+        &mut self,
+        keep: usize,
+        cells: impl Iterator<Item = (u32, u32)>,
+        lane: impl FnMut(Option<Pile>),
+        put: impl FnMut(u32, u32),
+    ) {
+        let end = self.tiles[keep];
+        let place = self.slots[end.first_slot as usize];
+        self.tiles.truncate(keep);
+        self.slots.truncate(end.first_slot as usize);
+        self.helpers.truncate(end.first_helper as usize);
+        self.append(place, cells, lane, put);
+    }
+
+    fn append(
+        &mut self,
+        mut place: u32,
+        cells: impl Iterator<Item = (u32, u32)>,
+        mut lane: impl FnMut(Option<Pile>),
+        mut put: impl FnMut(u32, u32),
+    ) {
         let (mut piles, mut lanes) = ([Pile::default(); LANES], 0);
         for (cell, (first, count)) in cells.enumerate() {
             let deep = DEEP.max(count.div_ceil(LANES as u32));
@@ -363,7 +426,7 @@ pub fn load<const N: usize>(lanes: &mut [Lane; N], columns: &[&[f64]; N], start:
 pub fn load_one(lane: &mut Lane, column: &[f64], start: usize) {
     let from = &column[start..];
     match from.first_chunk::<LANES>() {
-        Some(all) => *lane = *all,
+        Some(all) => **lane = *all,
         None => lane[..from.len()].copy_from_slice(from),
     }
 }
@@ -456,7 +519,7 @@ mod tests {
         for part in [low, high] {
             for (number, contents) in part.each() {
                 assert!(part.cells.contains(&number));
-                let mut sum = [0.0; LANES];
+                let mut sum = Lane::of(0.0);
                 for slot in contents.slots() {
                     assert!(slot.start >= part.particles.start && slot.end <= part.particles.end);
                     for (lane, place) in slot.enumerate() {
@@ -486,7 +549,7 @@ mod tests {
     #[test]
     fn numbers_go_to_lanes_and_back() {
         let numbers: Vec<f64> = (0..50).map(f64::from).collect();
-        let mut lane = [0.0; LANES];
+        let mut lane = Lane::of(0.0);
         load_one(&mut lane, &numbers, 30);
         assert_eq!(lane[..20], numbers[30..]);
         let mut to = vec![0.0; 50];

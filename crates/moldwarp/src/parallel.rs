@@ -156,6 +156,11 @@ impl First {
         self.0 = self.0.min(index as u32);
     }
 
+    /// The same index by another number.
+    pub fn map(self, number: impl Fn(usize) -> usize) -> First {
+        self.get().map_or(self, |index| First(number(index) as u32))
+    }
+
     pub fn get(self) -> Option<usize> {
         (self.0 != u32::MAX).then_some(self.0 as usize)
     }

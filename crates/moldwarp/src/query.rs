@@ -129,7 +129,7 @@ impl Simulation {
         let body = |p: usize| usize::from(self.particles.body[p]);
         let own = |e: u32| self.particles_in(e).any(|p| body(p) == driver);
         let driven: Vec<bool> = (0..mesh.tets.len() as u32).map(own).collect();
-        let inside = |e: u32| self.order.inside(e as usize).len();
+        let inside = |e: u32| self.particles_in(e).count();
         self.driven
             .fewest(mesh, travel, |e| driven[e as usize], inside)
     }
@@ -242,7 +242,9 @@ impl Simulation {
 
     /// Places of the particles in an element.
     pub(crate) fn particles_in(&self, e: u32) -> impl Iterator<Item = usize> {
-        self.order.inside(e as usize).iter().map(|&p| p as usize)
+        let filed = self.order.inside(e as usize).iter().map(|&p| p as usize);
+        let stayed = filed.filter(move |&p| self.particles.element[p] == e);
+        stayed.chain(self.guests.inside(e))
     }
 
     /// Mean stress of the particles in an element, Pa, if there are any.

@@ -13,7 +13,7 @@ use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{Active, Cells, Grid, Node, Reference, Shared, TimeStepError};
+use crate::step::{Active, Cells, Grid, Guests, Node, Reference, Shared, TimeStepError};
 use crate::stop::{SetupError, Stop};
 use crate::switches::Switches;
 
@@ -48,6 +48,7 @@ pub struct Simulation {
     pub(crate) fields: Fields,
     pub(crate) contacts: Contacts,
     pub(crate) active: Active,
+    pub(crate) guests: Guests,
     pub(crate) nodes: Vec<Node>,
     pub(crate) shared: Shared,
     pub(crate) cells: Cells,
@@ -113,6 +114,7 @@ impl Simulation {
             fields,
             contacts,
             active: Active::default(),
+            guests: Guests::default(),
             nodes: Vec::new(),
             shared: Shared::default(),
             cells: Cells::default(),
@@ -237,7 +239,9 @@ impl Simulation {
             mesh,
             walls: &self.walls,
             fields: &self.fields,
+            margin: self.may_have_guests(),
         };
+        self.guests.clear();
         self.active.rebuild(&grid, &mut self.order);
         self.order.settle(&mut self.particles);
         let destination = &self.order.destination;

@@ -8,7 +8,7 @@ pub use mohr_coulomb::{
     MohrCoulomb, MohrCoulombParameters, MohrCoulombState, ParameterError, PlasticStep, YieldState,
 };
 
-use crate::lanes::{LANES, Lane, Simd, VoigtLanes, get, set};
+use crate::lanes::{Lane, Simd, VoigtLanes, get, set};
 use crate::tensor::Voigt;
 
 /// Most state variables that a model may keep per particle.
@@ -49,14 +49,14 @@ pub struct Strained {
 
 impl Default for Strained {
     fn default() -> Strained {
-        let zero = [[0.0; LANES]; 6];
+        let zero = [Lane::of(0.0); 6];
         Strained {
             before: zero,
             strain: zero,
             stress: zero,
             plastic: false,
             plastic_strain: zero,
-            state: [[0.0; LANES]; STATE_SIZE],
+            state: [Lane::of(0.0); STATE_SIZE],
         }
     }
 }

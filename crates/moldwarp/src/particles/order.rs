@@ -14,6 +14,8 @@ pub struct Order {
     /// Rank of the first particle of each element and field, and one past the last.
     first: Vec<u32>,
     fields: usize,
+    /// The element under which each particle lies: the one in which it was when they were put in order.
+    pub filed: Vec<u32>,
     /// Place of each particle by rank.
     places: Vec<u32>,
     /// Where each particle went in the last sort: new place by old place.
@@ -113,6 +115,7 @@ impl Order {
         permute(from, &mut particles.id, &mut self.indices);
         permute(from, &mut particles.element, &mut self.indices);
         permute(from, &mut particles.body, &mut self.bodies);
+        self.filed.clone_from(&particles.element);
     }
 }
 
@@ -124,6 +127,7 @@ fn permute<T: Copy + Default + Send + Sync>(
     values: &mut Vec<T>,
     spare: &mut Vec<T>,
 ) {
+    spare.reserve_exact(values.capacity().saturating_sub(spare.len()));
     spare.resize(values.len(), T::default());
     fold((source, &mut spare[..]), BLOCK, &|(source, spare): (
         &[u32],

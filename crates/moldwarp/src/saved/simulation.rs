@@ -10,7 +10,7 @@ use crate::particles::{Order, Particles};
 use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::stages::moduli;
-use crate::step::{Active, Cells, Node, Shared};
+use crate::step::{Active, Cells, Guests, Node, Shared};
 
 impl Simulation {
     /// Hands out everything that the simulation needs to go on, in sections with names; the plan is
@@ -27,13 +27,14 @@ impl Simulation {
             plan,
             particles,
             reserve,
-            // Particles are in order.
-            order: _,
+            // Particles are in order, but for guests.
+            order,
             walls,
             fields,
             contacts,
             // Numbered from the particles' elements.
             active: _,
+            guests,
             nodes,
             // Taken from the nodes, or written by each step before it is read.
             shared: _,
@@ -70,6 +71,8 @@ impl Simulation {
         };
         save("clock", &|out| clock.save(out))?;
         save("particles", &|out| particles.save(out))?;
+        let (homes, filed): (Vec<u32>, Vec<u32>) = guests.filed(&order.filed).unzip();
+        save("guests", &|out| (homes.save(out), filed.save(out)).1)?;
         save("mesh nodes", &|out| plan.mesh.nodes.save(out))?;
         save("materials", &|out| materials.save(out))?;
         save("reserve", &|out| reserve.save(out))?;
@@ -132,6 +135,7 @@ impl Simulation {
             fields: from.load("fields")?,
             contacts: Contacts::default(),
             active: Active::default(),
+            guests: Guests::default(),
             nodes: Vec::new(),
             shared: Shared::default(),
             cells: Cells::default(),
@@ -159,7 +163,7 @@ impl Simulation {
             plan,
         };
         simulation.check_numbers()?;
-        simulation.number()?;
+        simulation.number(from.load("guests")?)?;
         simulation.take_kick(nodes, cells)?;
         simulation.contacts = contacts;
         Ok(simulation)
@@ -179,10 +183,27 @@ impl Simulation {
     }
 
     /// Numbers cells and nodes as they were: particles are in order already.
-    fn number(&mut self) -> Result<(), Broken> {
+    fn number(&mut self, [homes, filed]: [Vec<u32>; 2]) -> Result<(), Broken> {
+        let elements = self.plan.mesh.tets.len();
+        let known = |&p: &u32| (p as usize) < self.particles.len();
+        check(
+            "guests",
+            homes.len() == filed.len() && homes.iter().all(known),
+        )?;
+        check("guests", filed.iter().all(|&e| (e as usize) < elements))?;
+        // Those that are guests lie under other elements than their own.
+        let own = &mut self.particles.element;
+        let replaced = homes.iter().zip(filed);
+        let own: Vec<u32> = replaced
+            .map(|(&p, e)| std::mem::replace(&mut own[p as usize], e))
+            .collect();
         self.reorder();
         let mut places = self.order.destination.iter().zip(0..);
-        check("particles", places.all(|(a, b)| *a == b))
+        check("particles", places.all(|(a, b)| *a == b))?;
+        for (&p, e) in homes.iter().zip(own) {
+            self.particles.element[p as usize] = e;
+        }
+        check("guests", homes.is_empty() || self.regroup())
     }
 
     /// Takes over what the last kick has left at nodes and in cells.

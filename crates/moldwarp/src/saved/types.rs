@@ -2,6 +2,7 @@
 
 use crate::boundary::{AbsorbingNode, Function, LoadPoint, Outflown};
 use crate::contact::{Mass, Projections, Rigid, State, Tally};
+use crate::lanes::{LANES, Lane};
 use crate::measure::{Energies, Forces, Scale};
 use crate::mesh::{Face, Surface, VolumeGroup};
 use crate::particles::Particles;
@@ -41,7 +42,6 @@ saved!(Node {
 
 saved!(CellSums {
     mass,
-    momentum,
     volume,
     solid,
 });
@@ -61,6 +61,16 @@ saved!(CellForce {
     density,
 });
 
+impl crate::saved::Saved for Lane {
+    fn save(&self, out: &mut Vec<u8>) {
+        (**self).save(out);
+    }
+
+    fn load(from: &mut crate::saved::Bytes) -> Result<Lane, crate::saved::Broken> {
+        <[f64; LANES]>::load(from).map(Lane::from)
+    }
+}
+
 /// The sums and stresses of the last kick; all else is written by each step before it is read.
 impl crate::saved::Saved for Cells {
     fn save(&self, out: &mut Vec<u8>) {
@@ -72,8 +82,7 @@ impl crate::saved::Saved for Cells {
             stresses,
             forces,
             strains: _,
-            weights: _,
-            corners: _,
+            portions: _,
         } = self;
         sums.save(out);
         pairs.save(out);

@@ -18,6 +18,9 @@ pub struct Grid<'a> {
     pub mesh: &'a Mesh,
     pub walls: &'a Walls,
     pub fields: &'a Fields,
+    /// Whether elements next to those with particles are cells, too: particles may come to them before
+    /// cells are found anew.
+    pub margin: bool,
 }
 
 /// Cells and nodes, numbered compactly.
@@ -27,7 +30,7 @@ pub struct Active {
     pub tiles: Tiles,
     /// Element of each lane of the tiles, or [`NONE`]. A lane that helps another has that one's element.
     pub elements: Vec<u32>,
-    /// The four nodes of each lane's cell, as compact numbers; 0 where there is none.
+    /// The four nodes of each lane's cell, as compact numbers; where there is none, those of another one.
     pub cell_nodes: Vec<[u32; 4]>,
     /// Whether a lane is a cell: it is neither empty nor a helper.
     pub is_cell: Vec<bool>,
@@ -49,6 +52,8 @@ pub struct Active {
     node_offsets: Vec<u32>,
     node_cells: Vec<Corner>,
     listed: Vec<Listed>,
+    /// Tiles without those of guests.
+    own_tiles: usize,
 }
 
 /// A cell as it is found, before it has a number.
@@ -61,7 +66,7 @@ struct Listed {
 }
 
 impl Active {
-    /// Corners of cells at node `slot`.
+    /// Corners of cells at node `slot`, where there is more than one field.
     #[inline]
     pub fn attached(&self, slot: usize) -> &[Corner] {
         &self.node_cells[self.node_offsets[slot] as usize..self.node_offsets[slot + 1] as usize]
@@ -136,16 +141,27 @@ impl Active {
             if !empty {
                 continue;
             }
+            let least = if grid.margin { 3 } else { 4 };
             for field in 0..fields {
-                let all = |n: &u32| self.slot_of_key[key(field, *n)] != NONE;
-                if tet.iter().all(all) {
+                let touched = |n: &&u32| self.slot_of_key[key(field, **n)] != NONE;
+                if tet.iter().filter(touched).count() >= least {
                     self.list(e, field, 0..0);
+                }
+            }
+        }
+        if grid.margin {
+            for cell in &self.listed {
+                for &n in &tets[cell.element as usize] {
+                    self.slot_of_key[key(usize::from(cell.field), n)] = touched;
                 }
             }
         }
         self.number_nodes(grid, nodes);
         self.number_cells(tets, order);
-        self.attach();
+        // Only contact asks for the cells around a node.
+        if fields > 1 {
+            self.attach();
+        }
     }
 
     fn list(&mut self, e: usize, field: usize, ranks: Range<usize>) {
@@ -183,7 +199,7 @@ impl Active {
             is_cell.push(pile.is_some_and(|pile| !pile.more));
             let Some(pile) = pile else {
                 elements.push(NONE);
-                cell_nodes.push([0; 4]);
+                cell_nodes.push(*cell_nodes.last().expect("a tile begins with a cell"));
                 fields.push(0);
                 ranks.push((0, 0));
                 return;
@@ -200,6 +216,48 @@ impl Active {
         };
         let cells = listed.iter().map(|cell| (cell.first, cell.count));
         tiles.rebuild(cells, lane, |rank, place| order.put(rank, place));
+        self.own_tiles = self.tiles.len();
+    }
+
+    /// Lays out guests behind the others: cells that they are in and how many each has. `put` is told the
+    /// place of each.
+    pub fn invite(&mut self, guests: &[(u32, u32)], put: impl FnMut(u32, u32)) {
+        let Active {
+            tiles,
+            elements,
+            cell_nodes,
+            is_cell,
+            fields,
+            ranks,
+            own_tiles,
+            ..
+        } = self;
+        let lanes = *own_tiles * LANES;
+        elements.truncate(lanes);
+        cell_nodes.truncate(lanes);
+        is_cell.truncate(lanes);
+        fields.truncate(lanes);
+        ranks.truncate(lanes);
+        let lane = |pile: Option<Pile>| {
+            let cell = pile.map(|pile| guests[pile.cell as usize].0 as usize);
+            elements.push(cell.map_or(NONE, |c| elements[c]));
+            let nodes = cell.map_or_else(|| cell_nodes.last(), |c| cell_nodes.get(c));
+            cell_nodes.push(*nodes.expect("there is a cell before"));
+            is_cell.push(false);
+            fields.push(0);
+            ranks.push((0, 0));
+        };
+        let mut first = 0;
+        let cells = guests.iter().map(|&(_, count)| {
+            first += count;
+            (first - count, count)
+        });
+        tiles.replace(*own_tiles, cells, lane, put);
+    }
+
+    /// The lanes of guests.
+    pub fn guest_lanes(&self) -> Range<usize> {
+        self.own_tiles * LANES..self.elements.len()
     }
 
     fn number_nodes(&mut self, grid: &Grid, nodes: usize) {
@@ -275,9 +333,11 @@ mod tests {
             mesh: &mesh,
             walls: &walls,
             fields: &fields,
+            margin: false,
         };
         active.rebuild(&grid, &mut order);
         assert_eq!(active.cell_count(), mesh.tets.len());
+        active.attach();
         let hole = active.cell(hole, 0).unwrap();
         assert!(active.ranks(hole).is_empty());
         for slot in 0..active.nodes.len() {
@@ -286,7 +346,17 @@ mod tests {
                 assert_eq!(own as usize, slot);
             }
         }
-        // With particles in one corner only, the rest sleeps.
+        // With particles in one corner only, the rest sleeps, but for the elements next to it.
+        let margin = Grid {
+            margin: true,
+            ..grid
+        };
+        active.rebuild(&margin, &mut Order::of(&[0], mesh.tets.len()));
+        let next = mesh.neighbours[0].iter().filter(|&&n| n != NONE).count();
+        assert_eq!(
+            (active.cell_count(), active.nodes.len()),
+            (1 + next, 4 + next)
+        );
         active.rebuild(&grid, &mut Order::of(&[0], mesh.tets.len()));
         assert_eq!((active.cell_count(), active.nodes.len()), (1, 4));
     }

@@ -8,7 +8,7 @@ use crate::Vec3;
 use crate::boundary::Outflow;
 use crate::contact::{Contacts, Fields};
 use crate::lanes::{
-    self, ByTile, LANES, Lane, either, for_each_simd, get, load, load_one, set, store, whole,
+    self, ByTile, Lane, either, for_each_simd, get, load, load_one, set, store, whole,
 };
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
@@ -20,6 +20,8 @@ use std::ops::Range;
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     let stays = !(sim.driven.moves() || sim.follower.moves());
     let mut crossing = move_particles(sim, stays);
+    crossing.outside = crossing.outside.map(|p| sim.guests.home(p, &sim.particles));
+    sim.guests_leave();
     sim.profile.lap(Part::Move);
     if !stays {
         move_mesh(sim)?;
@@ -28,7 +30,9 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
         crossing = locate(sim);
         sim.profile.lap(Part::Locate);
     }
-    if check(sim, crossing)? {
+    let gone = crossing.gone.get().is_some();
+    let crossed = check(sim, crossing)?;
+    if gone || crossed && !(sim.may_have_guests() && sim.regroup()) {
         sim.reorder();
     }
     sim.profile.lap(Part::Order);
@@ -81,13 +85,13 @@ struct Side {
 
 impl Default for Side {
     fn default() -> Side {
-        let vector = [[0.0; LANES]; 3];
+        let vector = [Lane::of(0.0); 3];
         Side {
             moved: NO_CORNERS,
             position: vector,
-            mass: [0.0; LANES],
-            work: [0.0; LANES],
-            left: [0.0; LANES],
+            mass: Lane::of(0.0),
+            work: Lane::of(0.0),
+            left: Lane::of(0.0),
         }
     }
 }
@@ -116,7 +120,9 @@ for_each_simd! {
             x += step;
             set(&mut side.position, l, x.to_array());
             side.work[l] += side.mass[l] * gravity.dot(step);
-            side.left[l] = either(is_inside(shapes.at(l, x)), 0.0, 1.0);
+            // Where a guest comes from lies a particle without mass.
+            let stays = is_inside(shapes.at(l, x)) | (side.mass[l] == 0.0);
+            side.left[l] = either(stays, 0.0, 1.0);
         }
         store(&side.position, position, start, lanes);
     }

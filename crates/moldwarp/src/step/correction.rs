@@ -19,8 +19,9 @@
 //! compression at 2θ = 1.94 (Kuhn tetrahedra of cubes, ν = 0, Courant number 0.5); we take 1.6.
 //! (Averaging lumped and consistent mass for phase accuracy: Goudreau and Taylor 1973.)
 
+use super::collect::{Portions, Share, Shares};
 use super::shapes::{Corners, NO_CORNERS, all_corners, load_nodes, set_corner};
-use super::{Active, BLOCK, CellPairs, Cells, Node, TILES};
+use super::{BLOCK, CellPairs, Node};
 use crate::Vec3;
 use crate::lanes::{LANES, for_each_simd};
 use crate::parallel::fold;
@@ -52,6 +53,7 @@ for_each_simd! {
         given: &[Vec3],
         pairs: &CellPairs,
         sums: &mut Corners,
+        share: &mut Share<3>,
     ) {
         load_nodes(w, nodes, given);
         for l in 0..LANES {
@@ -67,10 +69,11 @@ for_each_simd! {
                 set_corner(sums, l, i, sum[i]);
             }
         }
+        share.give_corners(nodes, sums);
     }
 }
 
-/// Σ_j M_ij (w_i − w_j) of each cell, for [`change`]. Returns θ.
+/// Collects Σ_j M_ij (w_i − w_j), w being accelerations (N) or averages (kg m/s), for [`changes`]. Returns θ.
 pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -> f64 {
     if sim.plan.numerics.mass == MassMatrix::Lumped {
         return 0.0;
@@ -87,27 +90,44 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
         *given = w(node);
     }
     let (active, given, pairs, simd) = (&*active, &shared.given[..], &cells.pairs[..], *simd);
-    let items = (0..pairs.len(), &mut cells.corners[..]);
-    fold(items, TILES, &|(tiles, corners): (
+    let portion = cells.portions.tiles;
+    let items = (0..pairs.len(), cells.portions.shares());
+    fold(items, portion, &|(tiles, shares): (
         Range<usize>,
-        &mut [Corners],
+        Shares<3>,
     )| {
-        let mut w = NO_CORNERS;
-        for (tile, sums) in tiles.zip(corners) {
+        let (mut w, mut sums, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
+        for tile in tiles {
             let nodes = active.tile_nodes(tile);
-            flow(simd, &mut w, nodes, given, &pairs[tile], sums);
+            flow(
+                simd,
+                &mut w,
+                nodes,
+                given,
+                &pairs[tile],
+                &mut sums,
+                &mut share,
+            );
         }
     });
     CORRECTION
 }
 
-/// B w − w at node `slot`, after [`exchange`].
-#[inline]
-pub(super) fn change(theta: f64, slot: usize, mass: f64, active: &Active, cells: &Cells) -> Vec3 {
-    if theta == 0.0 || mass == 0.0 {
-        return Vec3::ZERO;
+/// Σ_j M_ij (w_i − w_j) at these nodes, after [`exchange`].
+pub(super) fn changes(theta: f64, nodes: Range<usize>, portions: &Portions) -> [[f64; 3]; BLOCK] {
+    match theta {
+        0.0 => [[0.0; 3]; BLOCK],
+        _ => portions.sums(nodes),
     }
-    cells.at_node(active.attached(slot)) * (theta / mass)
+}
+
+/// B w − w at a node, from its sum.
+#[inline]
+pub(super) fn change(theta: f64, mass: f64, sum: [f64; 3]) -> Vec3 {
+    match mass {
+        0.0 => Vec3::ZERO,
+        _ => Vec3::from_array(sum) * (theta / mass),
+    }
 }
 
 /// What particles receive of the nodes' accelerations in a kick of length `h`.
@@ -122,7 +142,7 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         ledger,
         ..
     } = sim;
-    let (active, cells, constraints) = (&*active, &*cells, &*constraints);
+    let (active, portions, constraints) = (&*active, &cells.portions, &*constraints);
     let items = (0..nodes.len(), &mut nodes[..], &mut shared.given[..]);
     let gain = fold(items, BLOCK, &|(slots, nodes, given): (
         Range<usize>,
@@ -130,8 +150,9 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         &mut [Vec3],
     )| {
         let mut gain = 0.0;
-        for ((slot, node), given) in slots.zip(nodes).zip(given) {
-            let change = change(theta, slot, node.mass, active, cells);
+        let changes = changes(theta, slots.clone(), portions);
+        for (((slot, node), given), sum) in slots.zip(nodes).zip(given).zip(changes) {
+            let change = change(theta, node.mass, sum);
             node.received = node.acceleration
                 + match constraints.of(active.nodes[slot]) {
                     Some(constraint) => constraint.free * change,

@@ -22,9 +22,11 @@
 
 mod active;
 mod advance;
+mod collect;
 mod contact;
 mod correction;
 mod guard;
+mod guests;
 mod nodes;
 mod reference;
 mod remap;
@@ -40,6 +42,7 @@ mod to_nodes;
 mod to_particles;
 
 pub use active::{Active, Grid};
+pub(crate) use guests::Guests;
 pub(crate) use nodes::unheld;
 pub(crate) use reference::Reference;
 pub(crate) use state::{
@@ -61,6 +64,8 @@ impl Simulation {
     /// Advances positions, stresses and the mesh by `dt` seconds.
     pub(crate) fn drift(&mut self, dt: f64) -> Result<(), Stop> {
         self.profile.lap(Part::Between);
+        self.guests_arrive();
+        self.profile.lap(Part::Order);
         remap::run(self, dt);
         self.profile.lap(Part::Remap);
         strain::run(self);
@@ -68,6 +73,7 @@ impl Simulation {
         let crushed = stress::run(self);
         self.profile.lap(Part::Stress);
         if crushed {
+            self.guests_leave();
             return Err(self.crushed());
         }
         advance::run(self)
@@ -77,6 +83,19 @@ impl Simulation {
     /// Returns that coming step: the stable one, at most `limit` (0 at the end of a stage).
     pub(crate) fn kick(&mut self, before: f64, limit: f64) -> Result<f64, Stop> {
         self.profile.lap(Part::Between);
+        self.guests_arrive();
+        self.profile.lap(Part::Order);
+        let kicked = self.kick_all(before, limit);
+        self.guests_leave();
+        self.profile.lap(Part::Order);
+        match kicked? {
+            (_, kinetic) if !kinetic.is_finite() => Err(self.not_finite()),
+            (dt, _) => Ok(dt),
+        }
+    }
+
+    /// Returns the coming step and the energy of motion.
+    fn kick_all(&mut self, before: f64, limit: f64) -> Result<(f64, f64), Stop> {
         self.gravity = self.plan.gravity * self.switches.gravity(self.clock.time);
         to_nodes::run(self, before);
         let stable = time_step::choose(self).map_err(|error| self.no_time_step(error))?;
@@ -98,10 +117,7 @@ impl Simulation {
         self.profile.lap(Part::Receive);
         let kinetic = to_particles::run(self, before, after);
         self.profile.lap(Part::ToParticles);
-        if !kinetic.is_finite() {
-            return Err(self.not_finite());
-        }
-        Ok(dt)
+        Ok((dt, kinetic))
     }
 }
 

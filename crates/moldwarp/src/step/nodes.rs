@@ -1,11 +1,9 @@
 //! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
-use super::{Active, BLOCK, Cells, Node, contact, rigid};
+use super::{BLOCK, Node, contact, rigid};
 use crate::boundary::AbsorbingNode;
-use crate::lanes::lane_of;
 use crate::measure::{DriftWork, Forces};
-use crate::mesh::Corner;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3};
@@ -29,14 +27,15 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         ..
     } = sim;
     let weighs = reference.is_some();
-    let (active, gravity, cells) = (&*active, *gravity, &*cells);
+    let (active, gravity, portions) = (&*active, *gravity, &cells.portions);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        for (slot, node) in slots.zip(nodes) {
+        let sums: [_; BLOCK] = portions.sums(slots.clone());
+        for ((slot, node), sum) in slots.zip(nodes).zip(sums) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
                 *node = Node {
@@ -47,11 +46,8 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 continue;
             }
             let mesh_node = active.nodes[slot];
-            let internal = internal_force(slot, active, cells);
-            node.weighed = match weighs {
-                true => weighed(slot, active, cells),
-                false => node.mass,
-            };
+            let (internal, weighed) = pushed(sum);
+            node.weighed = if weighs { weighed } else { node.mass };
             let unbalanced = internal + gravity * node.weighed + node.load;
             let constraint = constraints.of(mesh_node);
             // What a constraint or an absorbing boundary holds is balanced and not to be damped.
@@ -102,18 +98,9 @@ fn book(sim: &mut Simulation, drifted: bool) {
     sim.watch.forces = forces;
 }
 
-/// −Σ S ∇N_i of a node, N.
-fn internal_force(slot: usize, active: &Active, cells: &Cells) -> Vec3 {
-    cells.at_node(active.attached(slot))
-}
-
-/// The mass whose weight pulls at a node where there is a reference stress, kg.
-fn weighed(slot: usize, active: &Active, cells: &Cells) -> f64 {
-    let own = |at: &Corner| {
-        let (tile, l) = lane_of(at.owner());
-        cells.forces[tile].weighed[at.local()][l]
-    };
-    active.attached(slot).iter().map(own).sum()
+/// −Σ S ∇N_i of a node, N, and the mass whose weight pulls at it where there is a reference stress, kg.
+fn pushed([x, y, z, weighed]: [f64; 4]) -> (Vec3, f64) {
+    (Vec3::new(x, y, z), weighed)
 }
 
 /// Forces that nodes would follow were nothing to hold them, N, by mesh node: for what is to begin
@@ -126,11 +113,9 @@ pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
         sim.slots(mesh_node)
             .map(|slot| {
                 let node = &sim.nodes[slot];
-                let internal = internal_force(slot, &sim.active, &sim.cells);
-                let weighed = match sim.reference {
-                    Some(_) => weighed(slot, &sim.active, &sim.cells),
-                    None => node.mass,
-                };
+                let [sum] = sim.cells.portions.sums(slot..slot + 1);
+                let (internal, weighed) = pushed(sum);
+                let weighed = sim.reference.as_ref().map_or(node.mass, |_| weighed);
                 internal + sim.gravity * weighed + node.load
             })
             .sum()

@@ -5,18 +5,16 @@
 //! velocity that they have, as they do in stage 3 with accelerations, so that a roller on a plane of
 //! symmetry is a mirror.
 
-use super::shapes::corner;
 use super::state::moved;
 use super::{BLOCK, Node, contact, correction};
 use crate::Vec3;
-use crate::lanes::lane_of;
 use crate::measure::DriftWork;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
 use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation, dt: f64) {
-    average(sim);
+    hold(sim);
     contact::remap(sim, |node| &mut node.average);
     let theta = correction::exchange(sim, |node| node.average);
     correct(sim, theta);
@@ -38,32 +36,21 @@ pub(super) fn run(sim: &mut Simulation, dt: f64) {
     probes.add_drift(moved);
 }
 
-/// v̄_i, with constraints applied.
-fn average(sim: &mut Simulation) {
+/// Applies constraints to v̄_i.
+fn hold(sim: &mut Simulation) {
     let Simulation {
         active,
         nodes,
-        cells,
         constraints,
         ..
     } = sim;
-    let (active, sums, constraints) = (&*active, &cells.sums[..], &*constraints);
+    let (active, constraints) = (&*active, &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
         for (slot, node) in slots.zip(nodes) {
-            let mut momentum = Vec3::ZERO;
-            for at in active.attached(slot) {
-                let (tile, l) = lane_of(at.owner());
-                momentum += corner(&sums[tile].momentum, l, at.local());
-            }
-            node.average = if node.mass > 0.0 {
-                momentum / node.mass
-            } else {
-                Vec3::ZERO
-            };
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.average = constraint.free * node.average + constraints.prescribed(constraint);
             }
@@ -80,15 +67,15 @@ fn correct(sim: &mut Simulation, theta: f64) {
         constraints,
         ..
     } = sim;
-    let (active, cells, constraints) = (&*active, &*cells, &*constraints);
+    let (active, portions, constraints) = (&*active, &cells.portions, &*constraints);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        for (slot, node) in slots.zip(nodes) {
-            node.grid_velocity = node.average;
-            node.grid_velocity += correction::change(theta, slot, node.mass, active, cells);
+        let changes = correction::changes(theta, slots.clone(), portions);
+        for ((slot, node), change) in slots.zip(nodes).zip(changes) {
+            node.grid_velocity = node.average + correction::change(theta, node.mass, change);
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =
                     constraint.free * node.grid_velocity + constraints.prescribed(constraint);

@@ -7,7 +7,7 @@ use crate::mesh::{Mesh, NONE, barycentric};
 /// Vectors at the four nodes of cells side by side.
 pub type Corners = [Lane; 12];
 
-pub(super) const NO_CORNERS: Corners = [[0.0; LANES]; 12];
+pub(super) const NO_CORNERS: Corners = [Lane::of(0.0); 12];
 
 /// What the shape functions of elements are made of. All zero where there is no element.
 #[derive(Clone, Debug)]
@@ -25,10 +25,10 @@ pub struct Shapes {
 impl Default for Shapes {
     fn default() -> Shapes {
         Shapes {
-            origin: [[0.0; LANES]; 3],
-            gradients: [[0.0; LANES]; 9],
-            volume: [0.0; LANES],
-            altitude: [0.0; LANES],
+            origin: [Lane::of(0.0); 3],
+            gradients: [Lane::of(0.0); 9],
+            volume: Lane::of(0.0),
+            altitude: Lane::of(0.0),
         }
     }
 }

@@ -22,10 +22,11 @@
 //! and frictional soil becomes too weak, the more the finer the mesh (validation case
 //! `collapse-smoothing`). It is offered for comparison and is not the default.
 
-use super::shapes::{Corners, all_corners, load_nodes, set_corner};
+use super::collect::{Portions, Shares};
 use super::shapes::{NO_CORNERS, sum_nodes};
-use super::{BLOCK, CellForce, Cells, TILES, strain, to_nodes};
-use crate::lanes::{LANES, Lane, either, get, lane_of};
+use super::shapes::{all_corners, load_nodes};
+use super::{BLOCK, CellForce, Cells, strain, to_nodes};
+use crate::lanes::{LANES, Lane, either, get};
 use crate::parallel::fold;
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
@@ -51,28 +52,18 @@ pub(super) fn strains(sim: &mut Simulation) {
     if sim.plan.numerics.smoothing == Smoothing::Off {
         return;
     }
-    let mut means = std::mem::take(&mut sim.shared.volumetric);
-    sum_at_nodes(sim, &mut means[..], 1.0);
-    sim.shared.volumetric = means;
+    means_at_nodes(&sim.cells.portions, &mut sim.shared.volumetric, 1.0);
 }
 
-/// At each node the sum of a value of the attached cells over that of their weights, both in `weights`, and
-/// over `factor`.
-fn sum_at_nodes(sim: &Simulation, means: &mut [f64], factor: f64) {
-    let (active, weights) = (&sim.active, &sim.cells.weights[..]);
+/// At each node the sum of what is smoothed times w_e over that of w_e, both collected, and over `factor`.
+fn means_at_nodes(portions: &Portions, means: &mut [f64], factor: f64) {
     let items = (0..means.len(), means);
     fold(items, BLOCK, &|(slots, means): (
         Range<usize>,
         &mut [f64],
     )| {
-        for (slot, mean) in slots.zip(means) {
-            let (mut sum, mut all) = (0.0, 0.0);
-            for at in active.attached(slot) {
-                let (tile, l) = lane_of(at.owner());
-                let [value, weight] = &weights[tile];
-                sum += value[l];
-                all += weight[l];
-            }
+        let sums: [_; BLOCK] = portions.sums(slots);
+        for (mean, [sum, all]) in means.iter_mut().zip(sums) {
             let whole = factor * all;
             *mean = if all > 0.0 { sum / whole } else { 0.0 };
         }
@@ -85,59 +76,62 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     if sim.plan.numerics.smoothing != Smoothing::Conjugate {
         return;
     }
-    let Cells {
-        shapes,
-        sums,
-        stresses,
-        forces,
-        weights,
-        ..
-    } = &mut sim.cells;
-    for (tile, [value, own]) in weights.iter_mut().enumerate() {
-        let (sum, force) = (&sums[tile], &forces[tile]);
-        for l in 0..LANES {
-            let closed = stresses[tile].closed[l];
-            own[l] = weight(
-                force.filled[l],
-                sum.volume[l],
-                closed,
-                shapes[tile].volume[l],
-            );
-            value[l] = tensor::trace(&get(&force.stress, l));
-        }
-    }
-    // q_n: a trace is three times the mean, and a quarter goes to each node.
-    let mut means = std::mem::take(&mut sim.shared.mean_stress);
-    sum_at_nodes(sim, &mut means, 12.0);
-    sim.shared.mean_stress = means;
     let Simulation {
         active,
         shared,
         cells,
         ledger,
+        simd,
         ..
     } = sim;
-    let (active, shared) = (&*active, &*shared);
-    let (shapes, weights) = (&cells.shapes[..], &cells.weights[..]);
-    let items = (
-        0..weights.len(),
-        &mut cells.forces[..],
-        &mut cells.corners[..],
-    );
-    let work = fold(items, TILES, &|(tiles, forces, corners): (
+    let (active, simd) = (&*active, *simd);
+    let Cells {
+        shapes,
+        sums,
+        stresses,
+        forces,
+        portions,
+        ..
+    } = cells;
+    let (shapes, sums, stresses) = (&shapes[..], &sums[..], &stresses[..]);
+    let weight = |tile: usize, l: usize, force: &CellForce| {
+        let (volume, closed) = (sums[tile].volume[l], stresses[tile].closed[l]);
+        weight(force.filled[l], volume, closed, shapes[tile].volume[l])
+    };
+    let (portion, known) = (portions.tiles, &forces[..]);
+    let items = (0..known.len(), portions.shares());
+    fold(items, portion, &|(tiles, shares): (
+        Range<usize>,
+        Shares<2>,
+    )| {
+        let mut share = shares.begin();
+        for tile in tiles {
+            let (nodes, force) = (active.tile_nodes(tile), &known[tile]);
+            for l in 0..LANES {
+                let value = tensor::trace(&get(&force.stress, l));
+                let weight = weight(tile, l, force);
+                share.give(&nodes[l], |_| [value, weight]);
+            }
+        }
+    });
+    // q_n: a trace is three times the mean, and a quarter goes to each node.
+    means_at_nodes(portions, &mut shared.mean_stress, 12.0);
+    let shared = &*shared;
+    let items = (0..forces.len(), &mut forces[..], portions.shares());
+    let work = fold(items, portion, &|(tiles, forces, shares): (
         Range<usize>,
         &mut [CellForce],
-        &mut [Corners],
+        Shares<4>,
     )| {
-        let (mut work, mut moved) = (0.0, NO_CORNERS);
-        let mut means = [0.0; LANES];
-        for ((tile, force), corners) in tiles.zip(forces).zip(corners) {
+        let (mut work, mut moved, mut pushed) = (0.0, NO_CORNERS, NO_CORNERS);
+        let (mut means, mut share) = (Lane::of(0.0), shares.begin());
+        for (tile, force) in tiles.zip(forces) {
             let nodes = active.tile_nodes(tile);
             sum_nodes(&mut means, nodes, &shared.mean_stress);
             load_nodes(&mut moved, nodes, &shared.moved);
             for l in (0..LANES).filter(|&l| active.is_cell[tile * LANES + l]) {
                 let own = tensor::trace(&get(&force.stress, l)) / 3.0;
-                let added = means[l] * weights[tile][1][l] - own;
+                let added = means[l] * weight(tile, l, force) - own;
                 force.smoothed[l] = added;
                 (0..3).for_each(|k| force.stress[k][l] += added);
                 if before > 0.0 {
@@ -145,9 +139,9 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
                     let gradient = strain::gradient(&gradients, all_corners(&moved, l));
                     work += 0.5 * added * tensor::trace(&tensor::strain(&gradient));
                 }
-                let pushed = to_nodes::nodal(l, &shapes[tile], force);
-                (0..4).for_each(|i| set_corner(corners, l, i, pushed[i]));
             }
+            let shapes = &shapes[tile];
+            to_nodes::push(simd, shapes, force, nodes, &mut pushed, &mut share);
         }
         work
     });

@@ -1,10 +1,10 @@
 //! What the step keeps per node and per cell.
 
-use super::shapes::{Corners, NO_CORNERS, Shapes, corner};
+use super::collect::Portions;
+use super::shapes::Shapes;
 use super::{Active, TILES};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, VoigtLanes, lane_of};
-use crate::mesh::Corner;
 use crate::mesh::Mesh;
 use crate::parallel::fold;
 use std::ops::Range;
@@ -77,13 +77,11 @@ impl Shared {
     }
 }
 
-/// Sums over the particles of each cell that its nodes gather.
+/// Sums over the particles of each cell.
 #[derive(Clone, Debug)]
 pub struct CellSums {
     /// Σ m_p N_i for each node, kg.
     pub mass: [Lane; 4],
-    /// Σ m_p v_p N_i for each node, kg m/s; after stage 3 with the new velocities.
-    pub momentum: Corners,
     /// Σ V_p, m³.
     pub volume: Lane,
     /// Σ V_p without what has opened in tension, m³: it judges filling.
@@ -145,20 +143,33 @@ pub struct Cells {
     pub stresses: Vec<CellStress>,
     pub forces: Vec<CellForce>,
     pub strains: Vec<CellStrain>,
-    /// What is smoothed times w_e, and w_e.
-    pub weights: Vec<[Lane; 2]>,
-    /// For each node, first the cells' forces, N, and then Σ_j M_ij (w_i − w_j), w being accelerations (N)
-    /// or averages (kg m/s).
-    pub corners: Vec<Corners>,
+    /// What nodes collect.
+    pub portions: Portions,
 }
 
-const ZERO: Lane = [0.0; LANES];
+const ZERO: Lane = Lane::of(0.0);
+
+impl CellSums {
+    /// All sums.
+    pub(super) fn lanes(&mut self) -> impl Iterator<Item = &mut Lane> {
+        (self.mass.iter_mut()).chain([&mut self.volume, &mut self.solid])
+    }
+}
+
+impl CellStress {
+    /// All sums; the greatest modulus is none.
+    pub(super) fn lanes(&mut self) -> impl Iterator<Item = &mut Lane> {
+        (self.stress.iter_mut())
+            .chain([&mut self.closed])
+            .chain(&mut self.moduli)
+            .chain(&mut self.reference)
+    }
+}
 
 impl Default for CellSums {
     fn default() -> CellSums {
         CellSums {
             mass: [ZERO; 4],
-            momentum: NO_CORNERS,
             volume: ZERO,
             solid: ZERO,
         }
@@ -209,9 +220,39 @@ impl Cells {
         self.stresses.resize_with(tiles, CellStress::default);
         self.forces.resize_with(tiles, CellForce::default);
         self.strains.resize_with(tiles, CellStrain::default);
-        self.weights.resize(tiles, [ZERO; 2]);
-        self.corners.resize(tiles, NO_CORNERS);
+        self.portions.renew(&active.cell_nodes);
         self.find_shapes(active, mesh);
+    }
+
+    /// The same after guests have been laid out anew.
+    pub(crate) fn renew_guests(&mut self, active: &Active, mesh: &Mesh) {
+        let tiles = active.tiles.len();
+        self.shapes.resize_with(tiles, Shapes::default);
+        self.sums.resize_with(tiles, CellSums::default);
+        self.pairs.resize(tiles, [ZERO; 6]);
+        self.stresses.resize_with(tiles, CellStress::default);
+        self.forces.resize_with(tiles, CellForce::default);
+        self.strains.resize_with(tiles, CellStrain::default);
+        self.portions.renew(&active.cell_nodes);
+        for tile in active.guest_lanes().start / LANES..tiles {
+            let elements = &active.elements[tile * LANES..(tile + 1) * LANES];
+            self.shapes[tile].load(mesh, elements);
+        }
+    }
+
+    /// Moves the sums of a lane that make a cell's stress to another one.
+    pub(super) fn add_sums(&mut self, from: usize, to: usize) {
+        let ((from, a), (to, b)) = (lane_of(from), lane_of(to));
+        let (sums, guests) = self.sums.split_at_mut(from);
+        for (to, from) in sums[to].lanes().zip(guests[0].lanes()) {
+            to[b] += std::mem::replace(&mut from[a], 0.0);
+        }
+        let (stresses, guests) = self.stresses.split_at_mut(from);
+        for (to, from) in stresses[to].lanes().zip(guests[0].lanes()) {
+            to[b] += std::mem::replace(&mut from[a], 0.0);
+        }
+        let (own, guest) = (&mut stresses[to].wave_modulus, &guests[0].wave_modulus);
+        own[b] = own[b].max(guest[a]);
     }
 
     /// Shape functions in the mesh as it is now.
@@ -232,17 +273,6 @@ impl Cells {
     pub(crate) fn volume(&self, c: usize) -> f64 {
         let (tile, lane) = lane_of(c);
         self.sums[tile].volume[lane]
-    }
-
-    /// Sum of `corners` at a node.
-    #[inline]
-    pub(super) fn at_node(&self, attached: &[Corner]) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        for at in attached {
-            let (tile, lane) = lane_of(at.owner());
-            sum += corner(&self.corners[tile], lane, at.local());
-        }
-        sum
     }
 }
 

@@ -1,7 +1,8 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
+use super::collect::{Share, Shares};
 use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, load_nodes};
-use super::{CellForce, CellStrain, CellStress, CellSums, Cells, TILES, smoothing};
+use super::{CellForce, CellStrain, CellStress, CellSums, Cells, smoothing};
 use crate::lanes::{self, LANES, Lane, for_each_simd, get, set};
 use crate::parallel::fold;
 use crate::simulation::Simulation;
@@ -87,6 +88,16 @@ for_each_simd! {
     }
 }
 
+for_each_simd! {
+    /// Gives nodes what is smoothed times w_e, and w_e.
+    fn give(weights: &[Lane; 2], nodes: &[[u32; 4]; LANES], share: &mut Share<2>) {
+        for l in 0..LANES {
+            let weights = get(weights, l);
+            share.give(&nodes[l], |_| weights);
+        }
+    }
+}
+
 fn gradients(sim: &mut Simulation) {
     let Simulation {
         active,
@@ -103,28 +114,31 @@ fn gradients(sim: &mut Simulation) {
         stresses,
         forces,
         strains,
-        weights,
+        portions,
         ..
     } = cells;
     let (shapes, sums) = (&shapes[..], &sums[..]);
     let (stresses, forces) = (&stresses[..], &forces[..]);
-    let items = (0..sums.len(), &mut strains[..], &mut weights[..]);
-    let work = fold(items, TILES, &|(tiles, strains, weights): (
+    let portion = portions.tiles;
+    let items = (0..sums.len(), &mut strains[..], portions.shares());
+    let work = fold(items, portion, &|(tiles, strains, shares): (
         Range<usize>,
         &mut [CellStrain],
-        &mut [[Lane; 2]],
+        Shares<2>,
     )| {
-        let mut moved = NO_CORNERS;
-        let mut works = [[0.0; LANES]; 4];
-        for ((tile, strains), weights) in tiles.zip(strains).zip(weights) {
-            load_nodes(&mut moved, active.tile_nodes(tile), &shared.moved);
+        let (mut moved, mut share) = (NO_CORNERS, shares.begin());
+        let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 4]);
+        for (tile, strains) in tiles.zip(strains) {
+            let nodes = active.tile_nodes(tile);
+            load_nodes(&mut moved, nodes, &shared.moved);
             let tile = Worked {
                 shapes: &shapes[tile],
                 sum: &sums[tile],
                 stress: &stresses[tile],
                 force: &forces[tile],
             };
-            deform(simd, &tile, &moved, strains, weights, &mut works);
+            deform(simd, &tile, &moved, strains, &mut weights, &mut works);
+            give(simd, &weights, nodes, &mut share);
         }
         works.each_ref().map(lanes::sum)
     });

@@ -68,9 +68,9 @@ pub(super) fn run(sim: &mut Simulation) -> bool {
         let mut arrays = block.particles;
         let mut side = Side::default();
         let mut points = Points::default();
-        let mut works: Works = [[0.0; LANES]; 3];
+        let mut works: Works = [Lane::of(0.0); 3];
         // Volume after the step over that before.
-        let mut least = [f64::INFINITY; LANES];
+        let mut least = Lane::of(f64::INFINITY);
         for (number, tile) in tiles {
             let own = &strains[number];
             side.smoothed = own.volumetric;
@@ -102,9 +102,9 @@ pub(super) fn run(sim: &mut Simulation) -> bool {
 impl Default for Side {
     fn default() -> Side {
         Side {
-            smoothed: [0.0; LANES],
-            strain: [[0.0; LANES]; 6],
-            turn: [[0.0; LANES]; 9],
+            smoothed: Lane::of(0.0),
+            strain: [Lane::of(0.0); 6],
+            turn: [Lane::of(0.0); 9],
         }
     }
 }
@@ -113,8 +113,8 @@ impl Default for Points {
     fn default() -> Points {
         Points {
             increment: Strained::default(),
-            volume: [0.0; LANES],
-            separated: [0.0; LANES],
+            volume: Lane::of(0.0),
+            separated: Lane::of(0.0),
         }
     }
 }

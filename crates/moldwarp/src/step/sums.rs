@@ -1,8 +1,9 @@
 //! Sums over the particles of each cell, the first part of stage 1.
 
+use super::collect::{Share, Shares};
 use super::correction::PAIRS;
-use super::shapes::{Shapes, corner, set_corner};
-use super::{CellPairs, CellStress, CellSums, TILES};
+use super::shapes::{Corners, NO_CORNERS, Shapes, corner, set_corner};
+use super::{CellPairs, CellStress, CellSums};
 use crate::Vec3;
 use crate::lanes::{
     ByTile, LANES, Lane, VoigtLanes, for_each_simd, get, load, load_one, set, whole,
@@ -12,6 +13,10 @@ use crate::particles::Particles;
 use crate::plan::Plan;
 use crate::simulation::Simulation;
 use std::ops::Range;
+
+/// What nodes are given: Σ m_p v_p N_i, Σ m_p N_i, and of the whole cell Σ V_p without what has opened and
+/// Σ m_p.
+pub(super) type Given = [f64; 6];
 
 /// Particles side by side.
 struct Side {
@@ -24,19 +29,22 @@ struct Side {
     shares: [Lane; 2],
     /// λ, G and E_c, Pa.
     elasticity: [Lane; 3],
+    /// Σ m_p v_p N_i of each cell.
+    momentum: Corners,
 }
 
 impl Default for Side {
     fn default() -> Side {
-        let vector = [[0.0; LANES]; 3];
+        let vector = [Lane::of(0.0); 3];
         Side {
             x: vector,
             v: vector,
-            mass: [0.0; LANES],
-            volume: [0.0; LANES],
-            stress: [[0.0; LANES]; 6],
-            shares: [[1.0; LANES]; 2],
+            mass: Lane::of(0.0),
+            volume: Lane::of(0.0),
+            stress: [Lane::of(0.0); 6],
+            shares: [Lane::of(1.0); 2],
             elasticity: vector,
+            momentum: NO_CORNERS,
         }
     }
 }
@@ -67,8 +75,8 @@ for_each_simd! {
             for i in 0..4 {
                 let share = n[i] * m;
                 sum.mass[i][l] += share;
-                let momentum = corner(&sum.momentum, l, i) + v * share;
-                set_corner(&mut sum.momentum, l, i, momentum);
+                let momentum = corner(&side.momentum, l, i) + v * share;
+                set_corner(&mut side.momentum, l, i, momentum);
             }
             for k in 0..6 {
                 let (i, j) = PAIRS[k];
@@ -87,6 +95,20 @@ for_each_simd! {
         }
         for l in 0..lanes {
             stress.wave_modulus[l] = stress.wave_modulus[l].max(side.elasticity[2][l]);
+        }
+    }
+}
+
+for_each_simd! {
+    /// Gives nodes what they collect.
+    fn give(side: &Side, sum: &CellSums, nodes: &[[u32; 4]; LANES], share: &mut Share<6>) {
+        for l in 0..LANES {
+            let (mass, solid) = (get(&sum.mass, l), sum.solid[l]);
+            let all = mass[0] + mass[1] + mass[2] + mass[3];
+            share.give(&nodes[l], |i| {
+                let [x, y, z] = corner(&side.momentum, l, i).to_array();
+                [x, y, z, mass[i], solid, all]
+            });
         }
     }
 }
@@ -116,16 +138,20 @@ pub(super) fn run(sim: &mut Simulation) {
         &mut cells.stresses[..],
     );
     let shapes = &cells.shapes[..];
-    let all = ByTile::new(&active.tiles, (), (sums, shapes));
-    fold(all, TILES, &|block: ByTile<(), (Sums, &[Shapes])>| {
+    type Records<'a> = (Sums<'a>, Shares<'a, 6>, &'a [Shapes]);
+    let portion = cells.portions.tiles;
+    let shares = cells.portions.shares();
+    let all = ByTile::new(&active.tiles, (), (sums, shares, shapes));
+    fold(all, portion, &|block: ByTile<(), Records>| {
         let tiles = block.each();
-        let ((sums, pairs, stresses), shapes) = block.cells;
-        let mut side = Side::default();
+        let ((sums, pairs, stresses), shares, shapes) = block.cells;
+        let (mut side, mut share) = (Side::default(), shares.begin());
         let records = sums.iter_mut().zip(pairs).zip(stresses).zip(shapes);
-        for ((_, tile), (((sum, pairs), stress), shapes)) in tiles.zip(records) {
+        for ((number, tile), (((sum, pairs), stress), shapes)) in tiles.zip(records) {
             *sum = CellSums::default();
             *pairs = CellPairs::default();
             *stress = CellStress::default();
+            side.momentum = NO_CORNERS;
             for slot in tile.slots() {
                 side.look_up(plan, elasticity, particles, slot.clone());
                 add(
@@ -139,14 +165,10 @@ pub(super) fn run(sim: &mut Simulation) {
                 }
             }
             if !tile.helpers.is_empty() {
-                let lanes = (sum.mass.iter_mut())
-                    .chain(&mut sum.momentum)
-                    .chain([&mut sum.volume, &mut sum.solid])
+                let lanes = (sum.lanes())
+                    .chain(&mut side.momentum)
                     .chain(pairs)
-                    .chain(&mut stress.stress)
-                    .chain([&mut stress.closed])
-                    .chain(&mut stress.moduli)
-                    .chain(&mut stress.reference);
+                    .chain(stress.lanes());
                 tile.gather(lanes);
                 for helper in tile.helpers {
                     let [from, to] = [helper.lane, helper.of].map(usize::from);
@@ -154,6 +176,7 @@ pub(super) fn run(sim: &mut Simulation) {
                     moduli[to] = moduli[to].max(moduli[from]);
                 }
             }
+            give(simd, &side, sum, active.tile_nodes(number), &mut share);
         }
     });
 }

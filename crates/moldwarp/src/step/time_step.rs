@@ -89,11 +89,11 @@ pub(crate) fn critical(sim: &Simulation) -> f64 {
         TILES,
         &|(shapes, (sums, stresses, forces)): Records| {
             let mut smallest = Smallest::default();
-            let mut steps = [0.0; LANES];
+            let mut steps = Lane::of(0.0);
             let records = shapes.iter().zip(sums).zip(stresses).zip(forces);
             for (((shapes, sum), stress), force) in records {
                 times(*simd, &limits, shapes, sum, stress, force, &mut steps);
-                for step in steps {
+                for &step in steps.iter() {
                     smallest = smallest.plus(Smallest(step));
                 }
             }
@@ -109,7 +109,7 @@ fn shortest_at(sim: &Simulation) -> Vec3 {
     let Simulation {
         plan, cells, simd, ..
     } = sim;
-    let mut steps = [0.0; LANES];
+    let mut steps = Lane::of(0.0);
     let mut shortest = (f64::INFINITY, 0);
     for tile in 0..cells.sums.len() {
         let (shapes, sum) = (&cells.shapes[tile], &cells.sums[tile]);

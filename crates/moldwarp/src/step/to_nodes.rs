@@ -1,15 +1,15 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
+use super::collect::{Share, Shares};
 use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, corner, load_nodes, set_corner};
 use super::{
-    Active, BLOCK, CellForce, CellStress, CellSums, Cells, Node, TILES, shapes, smoothing, strain,
-    sums,
+    Active, BLOCK, CellForce, CellStress, CellSums, Cells, Node, shapes, smoothing, strain, sums,
 };
 use crate::lanes::{self, LANES, Lane, Simd, either, for_each_simd, get, lane_of, set};
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::fold;
-use crate::plan::Integration;
+use crate::plan::{Integration, Smoothing};
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt, add_scaled};
 use crate::{Mat3, Vec3};
@@ -20,6 +20,7 @@ const FILLED: f64 = 0.6;
 
 pub(super) fn run(sim: &mut Simulation, before: f64) {
     sums::run(sim);
+    sim.count_guests();
     sum_nodes(sim);
     sim.profile.lap(Part::ToNodes);
     cell_forces(sim, before);
@@ -39,7 +40,7 @@ fn sum_nodes(sim: &mut Simulation) {
         cells,
         ..
     } = sim;
-    let (active, sums, mesh) = (&*active, &cells.sums, &plan.mesh);
+    let (active, portions, mesh) = (&*active, &cells.portions, &plan.mesh);
     let (walls, contacts) = (&*walls, &*contacts);
     let grid_nodes = walls.count(mesh) as u32;
     let numbers = (&mut shared.filling[..], &mut shared.density[..]);
@@ -50,18 +51,11 @@ fn sum_nodes(sim: &mut Simulation) {
         &mut [Node],
         Numbers,
     )| {
-        for ((slot, node), (filling, density)) in
-            slots.zip(nodes).zip(fillings.iter_mut().zip(densities))
-        {
-            let (mut mass, mut momentum, mut volume, mut all_mass) = (0.0, Vec3::ZERO, 0.0, 0.0);
-            for at in active.attached(slot) {
-                let (tile, l) = lane_of(at.owner());
-                let sum = &sums[tile];
-                mass += sum.mass[at.local()][l];
-                momentum += corner(&sum.momentum, l, at.local());
-                volume += sum.solid[l];
-                all_mass += sum.mass[0][l] + sum.mass[1][l] + sum.mass[2][l] + sum.mass[3][l];
-            }
+        let sums: [sums::Given; BLOCK] = portions.sums(slots.clone());
+        let numbers = fillings.iter_mut().zip(densities);
+        for (((slot, node), sum), (filling, density)) in slots.zip(nodes).zip(sums).zip(numbers) {
+            let [x, y, z, mass, volume, all_mass] = sum;
+            let momentum = Vec3::new(x, y, z);
             let grid = active.keys[slot] % grid_nodes;
             let mut whole = walls.volume(mesh, grid);
             if contacts.meets(slot) {
@@ -120,19 +114,22 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
         sums,
         stresses,
         forces,
-        corners,
+        portions,
         ..
     } = cells;
     let (shapes, sums, stresses) = (&shapes[..], &sums[..], &stresses[..]);
-    let items = (0..sums.len(), &mut forces[..], &mut corners[..]);
-    let work = fold(items, TILES, &|(range, forces, corners): (
+    // Else forces are pushed when their stresses have been smoothed.
+    let last = plan.numerics.smoothing != Smoothing::Conjugate;
+    let portion = portions.tiles;
+    let items = (0..sums.len(), &mut forces[..], portions.shares());
+    let work = fold(items, portion, &|(range, forces, shares): (
         Range<usize>,
         &mut [CellForce],
-        &mut [Corners],
+        Shares<4>,
     )| {
-        let mut moved = NO_CORNERS;
-        let mut work: [Lane; 3] = [[0.0; LANES]; 3];
-        for ((tile, force), corners) in range.zip(forces).zip(corners) {
+        let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
+        let mut work: [Lane; 3] = [Lane::of(0.0); 3];
+        for (tile, force) in range.zip(forces) {
             let nodes = active.tile_nodes(tile);
             for l in 0..LANES {
                 let filled = mixed && active.is_cell[tile * LANES + l];
@@ -164,7 +161,9 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 resist(simd, shapes, sum, stress, force, &moved, per_step);
                 half_work(simd, shapes, stress, force, &moved, &mut work);
             }
-            push(simd, shapes, force, corners);
+            if last {
+                push(simd, shapes, force, nodes, &mut pushed, &mut share);
+            }
         }
         work.each_ref().map(lanes::sum)
     });
@@ -244,19 +243,32 @@ for_each_simd! {
 }
 
 for_each_simd! {
-    /// f_i = −S ∇N_i.
-    fn push(shapes: &Shapes, force: &CellForce, corners: &mut Corners) {
+    /// Gives nodes f_i = −S ∇N_i and the mass whose weight pulls at them.
+    pub(super) fn push(
+        shapes: &Shapes,
+        force: &CellForce,
+        nodes: &[[u32; 4]; LANES],
+        pushed: &mut Corners,
+        share: &mut Share<4>,
+    ) {
         for l in 0..LANES {
             for (i, f) in nodal(l, shapes, force).into_iter().enumerate() {
-                set_corner(corners, l, i, f);
+                set_corner(pushed, l, i, f);
             }
+        }
+        for l in 0..LANES {
+            let weighed = get(&force.weighed, l);
+            share.give(&nodes[l], |i| {
+                let [x, y, z] = corner(pushed, l, i).to_array();
+                [x, y, z, weighed[i]]
+            });
         }
     }
 }
 
 /// f_i = −S ∇N_i.
 #[inline(always)]
-pub(super) fn nodal(l: usize, shapes: &Shapes, force: &CellForce) -> [Vec3; 4] {
+fn nodal(l: usize, shapes: &Shapes, force: &CellForce) -> [Vec3; 4] {
     let (cell, viscous) = (get(&force.stress, l), get(&force.viscous, l));
     let stress: Voigt = std::array::from_fn(|k| cell[k] + viscous[k]);
     let [b, c, d] = shapes.gradients(l);

@@ -1,22 +1,26 @@
 //! Stage 3: velocities of particles, v_p += h Σ N_i a_i (Jassim et al. Eq. 8), and the momenta
 //! of the updated particles for the remap.
 
+use super::collect::{Portions, Share, Shares};
 use super::shapes::{
     Corners, NO_CORNERS, Shapes, all_corners, corner, interpolate, load_nodes, set_corner,
 };
-use super::{CellSums, TILES};
+use super::{BLOCK, Node};
 use crate::Vec3;
 use crate::lanes::{
     ByTile, LANES, Lane, for_each_simd, get, load, load_one, set, store, sum as sum_lanes, whole,
 };
 use crate::parallel::fold;
 use crate::simulation::Simulation;
+use std::ops::Range;
 
 /// Cells and particles side by side.
 struct Kick {
     received: Corners,
     /// v_i + h a_i, for relaxation.
     grid: Corners,
+    /// Σ m_p v_p N_i of each cell.
+    momentum: Corners,
     position: [Lane; 3],
     velocity: [Lane; 3],
     mass: Lane,
@@ -26,13 +30,14 @@ struct Kick {
 
 impl Default for Kick {
     fn default() -> Kick {
-        let vector = [[0.0; LANES]; 3];
+        let vector = [Lane::of(0.0); 3];
         Kick {
             received: NO_CORNERS,
             grid: NO_CORNERS,
+            momentum: NO_CORNERS,
             position: vector,
             velocity: vector,
-            mass: [0.0; LANES],
+            mass: Lane::of(0.0),
             energy: vector,
         }
     }
@@ -52,7 +57,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
         simd,
         ..
     } = sim;
-    // Share of the mesh's velocity that particles take on in a kick.
+    // Part of the mesh's velocity that particles take on in a kick.
     let blend = -libm::expm1(-plan.numerics.pic_rate * h);
     if blend > 0.0 {
         for (grid, node) in shared.grid.iter_mut().zip(&*nodes) {
@@ -63,21 +68,22 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let (position, mass) = (particles.position.components(), &particles.mass[..]);
     type Velocities<'a> = [&'a mut [f64]; 3];
     let velocities = particles.velocity.components_mut();
-    let records = (&mut cells.sums[..], &cells.shapes[..]);
+    let portion = cells.portions.tiles;
+    let records = (cells.portions.shares(), &cells.shapes[..]);
     let all = ByTile::new(&active.tiles, velocities, records);
-    type Records<'a> = (&'a mut [CellSums], &'a [Shapes]);
-    let sums = fold(all, TILES, &|block: ByTile<Velocities, Records>| {
+    type Records<'a> = (Shares<'a, 3>, &'a [Shapes]);
+    let sums = fold(all, portion, &|block: ByTile<Velocities, Records>| {
         let first = block.first();
         let tiles = block.each();
-        let (mut velocity, (sums, shapes)) = (block.particles, block.cells);
-        let mut kick = Kick::default();
-        for (((number, tile), sum), shapes) in tiles.zip(sums).zip(shapes) {
+        let (mut velocity, (shares, shapes)) = (block.particles, block.cells);
+        let (mut kick, mut share) = (Kick::default(), shares.begin());
+        for ((number, tile), shapes) in tiles.zip(shapes) {
             let nodes = active.tile_nodes(number);
             load_nodes(&mut kick.received, nodes, &shared.given);
             if blend > 0.0 {
                 load_nodes(&mut kick.grid, nodes, &shared.grid);
             }
-            sum.momentum = NO_CORNERS;
+            kick.momentum = NO_CORNERS;
             for slot in tile.slots() {
                 let points = Points {
                     position,
@@ -85,18 +91,41 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
                     start: slot.start,
                     first,
                 };
-                let (momentum, lanes) = (&mut sum.momentum, slot.len());
-                let own = &mut velocity;
-                accelerate(
-                    simd, &mut kick, &points, shapes, own, momentum, h, blend, lanes,
-                );
+                let (own, lanes) = (&mut velocity, slot.len());
+                accelerate(simd, &mut kick, &points, shapes, own, h, blend, lanes);
             }
-            tile.gather(&mut sum.momentum);
+            tile.gather(&mut kick.momentum);
+            give(simd, &kick.momentum, nodes, &mut share);
         }
         kick.energy.each_ref().map(sum_lanes)
     });
+    average(nodes, &cells.portions);
     ledger.end_kick(sums, before, after);
     sums[2]
+}
+
+/// v̄_i.
+fn average(nodes: &mut [Node], portions: &Portions) {
+    fold((0..nodes.len(), nodes), BLOCK, &|(slots, nodes): (
+        Range<usize>,
+        &mut [Node],
+    )| {
+        let momenta: [_; BLOCK] = portions.sums(slots);
+        for (node, momentum) in nodes.iter_mut().zip(momenta) {
+            node.average = if node.mass > 0.0 {
+                Vec3::from_array(momentum) / node.mass
+            } else {
+                Vec3::ZERO
+            };
+        }
+    });
+}
+
+for_each_simd! {
+    /// Gives nodes their momenta.
+    fn give(momentum: &Corners, nodes: &[[u32; 4]; LANES], share: &mut Share<3>) {
+        share.give_corners(nodes, momentum);
+    }
 }
 
 /// The particles of a slot.
@@ -114,7 +143,6 @@ for_each_simd! {
         points: &Points,
         shapes: &Shapes,
         velocity: &mut [&mut [f64]; 3],
-        momentum: &mut Corners,
         h: f64,
         blend: f64,
         lanes: usize,
@@ -140,8 +168,8 @@ for_each_simd! {
             kick.energy[2][l] += 0.5 * m * v.length_squared();
             set(&mut kick.velocity, l, v.to_array());
             for i in 0..4 {
-                let sum = corner(momentum, l, i) + v * (n[i] * m);
-                set_corner(momentum, l, i, sum);
+                let sum = corner(&kick.momentum, l, i) + v * (n[i] * m);
+                set_corner(&mut kick.momentum, l, i, sum);
             }
         }
         store(&kick.velocity, velocity, own, lanes);

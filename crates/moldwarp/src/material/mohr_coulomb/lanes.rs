@@ -17,7 +17,7 @@ struct Returned {
 
 impl MohrCoulomb {
     pub(in super::super) fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
-        let mut sure: Lane = [0.0; LANES];
+        let mut sure: Lane = Lane::of(0.0);
         predict(simd, self, s, lanes, &mut sure);
         s.plastic = false;
         let (mut unsure, mut count) = ([0u8; LANES], 0);
@@ -55,10 +55,10 @@ impl MohrCoulomb {
     /// Returns the predictors in these lanes; says whether any of them yields.
     fn return_lanes(&self, simd: Simd, s: &mut Strained, unsure: &[u8]) -> bool {
         let mut r = Returned {
-            stress: [[0.0; LANES]; 6],
-            yielding: [0.0; LANES],
-            opening: [0.0; LANES],
-            odd: [1.0; LANES],
+            stress: [Lane::of(0.0); 6],
+            yielding: Lane::of(0.0),
+            opening: Lane::of(0.0),
+            odd: Lane::of(1.0),
         };
         for (i, &l) in unsure.iter().enumerate() {
             set(&mut r.stress, i, get(&s.stress, l.into()));

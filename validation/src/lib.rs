@@ -7,6 +7,7 @@ pub mod cases;
 pub mod exact;
 pub mod example;
 pub mod ledgers;
+pub mod made;
 pub mod pictures;
 mod report;
 pub mod setup;

@@ -3,7 +3,7 @@
 //! README, examples and book, `speed` measures the step, `ledgers [coarse|fine] [NAME]…` tabulates the ledgers of cases and examples, `soak`
 //! runs an example over and over.
 
-use moldwarp_validation::{Fidelity, cases, example, ledgers, pictures, soak, speed};
+use moldwarp_validation::{Fidelity, cases, example, ledgers, made, pictures, soak, speed};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
         .join("results")
         .join(fidelity.name());
-    let mut all_passed = true;
+    let (commit, mut all_passed) = (made::commit(), true);
     for case in chosen {
         let start = Instant::now();
         println!("{}: {}", case.name, case.title);
@@ -38,7 +38,9 @@ fn main() -> ExitCode {
         print!("{}", report.summary());
         println!("  {:.1} s\n", start.elapsed().as_secs_f64());
         all_passed &= report.passed();
-        if let Err(error) = report.write(&folder, case.name) {
+        let written = report.write(&folder, case.name);
+        let written = written.and_then(|()| made::note(&folder, case.name, &commit));
+        if let Err(error) = written {
             eprintln!("cannot write to {}: {error}", folder.display());
             return ExitCode::from(4);
         }

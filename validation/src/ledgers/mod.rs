@@ -9,10 +9,10 @@ mod table;
 
 pub use entry::{Entry, Kind, RESIDUAL_LIMIT, Watch, note};
 
+use crate::made::commit;
 use crate::{Fidelity, cases, setup};
 use moldwarp_io::scene;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Instant;
 use table::Ledgers;
 
@@ -94,24 +94,6 @@ fn compute(name: &str, fidelity: Fidelity) -> Result<Vec<Entry>, Failure> {
         }
     }
     Ok(entry::taken())
-}
-
-/// The commit that is computed, with a `+` if what decides the results has been changed since.
-pub(crate) fn commit() -> String {
-    let git = |arguments: &[&str]| {
-        let mut git = Command::new("git");
-        git.current_dir(root()).args(arguments).output().ok()
-    };
-    let sources = ["crates", "validation/src", "validation/meshes", "examples"];
-    let changed = git(&[&["diff", "--quiet", "HEAD", "--"], &sources[..]].concat());
-    let head = git(&["rev-parse", "--short=7", "HEAD"]).filter(|o| o.status.success());
-    match (head, changed) {
-        (Some(head), Some(changed)) => {
-            let mark = if changed.status.success() { "" } else { "+" };
-            format!("{}{mark}", String::from_utf8_lossy(&head.stdout).trim())
-        }
-        _ => "unknown".to_owned(),
-    }
 }
 
 #[cfg(test)]

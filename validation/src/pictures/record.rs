@@ -1,7 +1,7 @@
 //! `pictures.csv`: which scene made a picture, and at which commit.
 
 use super::{Entry, Failure, file_and_sets};
-use crate::ledgers::commit;
+use crate::made::commit;
 use moldwarp_io::output::Hasher;
 use moldwarp_io::output::csv::read_text;
 use moldwarp_io::output::hash::scene_hash;

@@ -7,7 +7,6 @@ use super::raw::{RawContact, Text, Texts};
 use super::surfaces::unique;
 use super::values::{choose, find, fits_a_column, not_negative, placed};
 use moldwarp::contact::{ContactError, Fields};
-use moldwarp::material::Material;
 use moldwarp::plan::{Body, Contact, ContactSurface, NamedMaterial, Stage};
 use std::ops::Range;
 
@@ -26,7 +25,7 @@ pub(super) fn contacts(
         let later = stages.iter().flat_map(|s| &s.materials);
         let later = later.filter(|c| c.0 == b).map(|c| c.1);
         let mut all = later.chain([bodies[b].material]);
-        all.any(|m| matches!(materials[m].model, Material::MohrCoulomb(_)))
+        all.any(|m| materials[m].model.is_plastic())
     };
     let mut contacts: Vec<Contact> = Vec::new();
     for item in raw {

@@ -32,3 +32,30 @@ fn the_ground_around_the_tunnel_is_at_rest() {
     );
     assert!(greatest < 1e-6, "{greatest}");
 }
+
+/// The book's first own problem: its sketch's volume, ground at rest in its first stage, and a cut whose
+/// face moves out once it is dug.
+#[test]
+fn the_books_cut_is_dug_out_of_ground_at_rest() {
+    let path = "../../book/src/first-problem/scene.toml".as_ref();
+    let mut scene = moldwarp_io::scene::load(path, &[]).unwrap();
+    scene.plan.stages[1].until = moldwarp::plan::Until::Steps(200);
+    let mut sim = Simulation::new(scene.plan).unwrap();
+    let volume: f64 = sim.particles().volume.iter().sum();
+    assert!((volume - 30.0).abs() < 1e-9, "{volume}");
+    let crest = |sim: &Simulation| {
+        let p = sim.particles();
+        let places = p.position.iter().zip(p.displacements());
+        let near = places.filter(|(x, _)| x.x > -0.5 && x.x < 0.1 && x.z > -0.5);
+        near.map(|(_, u)| u.x).fold(0.0f64, f64::max)
+    };
+    while sim.stage() == 0 {
+        sim.step().unwrap();
+    }
+    let before = crest(&sim);
+    assert!(before < 1e-9, "{before}");
+    while !sim.finished() {
+        sim.step().unwrap();
+    }
+    assert!(crest(&sim) > 1e-3, "{}", crest(&sim));
+}

@@ -174,6 +174,14 @@ impl Material {
         }
     }
 
+    /// Whether it can flow. A contact with a body that does has no gap check unless it is asked for.
+    pub fn is_plastic(&self) -> bool {
+        match self {
+            Material::LinearElastic(_) | Material::Rigid => false,
+            Material::MohrCoulomb(_) | Material::External(_) => true,
+        }
+    }
+
     /// Whether bodies of it move as one.
     pub fn is_rigid(&self) -> bool {
         matches!(self, Material::Rigid)

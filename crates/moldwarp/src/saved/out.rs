@@ -126,6 +126,7 @@ mod tests {
             let list: Vec<(u8, [f64; 3])> = (0..count).map(|i| (i as u8, [i as f64; 3])).collect();
             let columns: [Vec<f64>; 2] = [vec![1.5; count], vec![-0.0; count]];
             let both = (list, columns);
+            type Both = (Vec<(u8, [f64; 3])>, [Vec<f64>; 2]);
             let (mut bytes, mut greatest) = (Vec::new(), 0);
             let section = Section::new(&both);
             section.pieces(&mut |piece| {
@@ -134,7 +135,7 @@ mod tests {
             });
             assert_eq!(bytes.len(), section.size());
             assert!(greatest <= PIECE);
-            let back: (Vec<(u8, [f64; 3])>, [Vec<f64>; 2]) = crate::saved::load(&bytes).unwrap();
+            let back: Both = crate::saved::load(&bytes).unwrap();
             assert!(back == both);
         }
         let mut long = Vec::new();

@@ -213,6 +213,11 @@ impl Default for CellStrain {
 impl Cells {
     /// Of these cells.
     pub(crate) fn renew(&mut self, active: &Active, mesh: &Mesh) {
+        self.resize(active);
+        self.find_shapes(active, mesh);
+    }
+
+    fn resize(&mut self, active: &Active) {
         let tiles = active.tiles.len();
         self.shapes.resize_with(tiles, Shapes::default);
         self.sums.resize_with(tiles, CellSums::default);
@@ -221,7 +226,6 @@ impl Cells {
         self.forces.resize_with(tiles, CellForce::default);
         self.strains.resize_with(tiles, CellStrain::default);
         self.portions.renew(&active.cell_nodes);
-        self.find_shapes(active, mesh);
     }
 
     /// Room for guests. A portion of theirs may have all nodes.
@@ -237,15 +241,8 @@ impl Cells {
 
     /// The same after guests have been laid out anew.
     pub(crate) fn renew_guests(&mut self, active: &Active, mesh: &Mesh) {
-        let tiles = active.tiles.len();
-        self.shapes.resize_with(tiles, Shapes::default);
-        self.sums.resize_with(tiles, CellSums::default);
-        self.pairs.resize(tiles, [ZERO; 6]);
-        self.stresses.resize_with(tiles, CellStress::default);
-        self.forces.resize_with(tiles, CellForce::default);
-        self.strains.resize_with(tiles, CellStrain::default);
-        self.portions.renew(&active.cell_nodes);
-        for tile in active.guest_lanes().start / LANES..tiles {
+        self.resize(active);
+        for tile in active.guest_lanes().start / LANES..active.tiles.len() {
             let elements = &active.elements[tile * LANES..(tile + 1) * LANES];
             self.shapes[tile].load(mesh, elements);
         }

@@ -193,6 +193,8 @@ def test_kept_and_loaded(column: dict[str, Any], tmp_path: Path) -> None:
 
 def test_ctrl_c_within_a_material(column: dict[str, Any]) -> None:
     """The step is made whole, and can be gone on from."""
+    # A shell that starts programs in the background has them ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     calls: list[int] = []
 
     class Slow(Elastic):

@@ -250,6 +250,8 @@ def test_ctrl_c_ends_a_run_between_two_steps(column: dict[str, Any]) -> None:
     sim = moldwarp.Simulation(column)
     main = threading.main_thread().ident
     assert main is not None
+    # A shell that starts programs in the background has them ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.3, lambda: signal.pthread_kill(main, signal.SIGINT))
     timer.start()
     begun = time.monotonic()

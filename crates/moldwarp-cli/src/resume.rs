@@ -15,7 +15,9 @@ pub fn resume(args: &ResumeArgs) -> Result<Exit, Failure> {
         interrupt: signals::watch()?,
         ..RunOptions::default()
     };
-    match go_on(&args.dir, &args.sets, &options, &mut Display::new(threads))? {
+    let mut display = Display::new(threads);
+    // On a thread of the pool, as in `run`.
+    match rayon::scope(|_| go_on(&args.dir, &args.sets, &options, &mut display))? {
         Some(outcome) => conclude(outcome, args.how.profile, args.report),
         None => {
             say(&format!(

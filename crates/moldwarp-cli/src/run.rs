@@ -17,7 +17,8 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
         interrupt: signals::watch()?,
         ..options(args, threads)?
     };
-    let outcome = compute(scene, &options, &mut Display::new(threads))?;
+    // On a thread of the pool, so that the step need not wait for one to wake up.
+    let outcome = rayon::scope(|_| compute(scene, &options, &mut Display::new(threads)))?;
     conclude(outcome, args.how.profile, args.report)
 }
 

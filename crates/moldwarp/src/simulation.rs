@@ -9,6 +9,7 @@ use crate::contact::{Contacts, Fields, is_rigid};
 use crate::lanes::Simd;
 use crate::measure::{Ledger, Part, Probes, Profile, Scale, Watch};
 use crate::mesh::{Driven, Follower, Walls};
+use crate::parallel;
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
@@ -211,7 +212,7 @@ impl Simulation {
             return Ok(());
         }
         let dt = self.clock.next;
-        self.drift(dt)?;
+        parallel::inside(|| self.drift(dt))?;
         self.clock.steps += 1;
         self.clock.stage_steps += 1;
         self.clock.time += dt;
@@ -220,10 +221,10 @@ impl Simulation {
         let at_rest = self.at_rest();
         let remaining = self.remaining();
         if remaining > 0.0 && !at_rest {
-            self.clock.next = self.kick(0.5 * dt, remaining)?;
+            self.clock.next = parallel::inside(|| self.kick(0.5 * dt, remaining))?;
             return Ok(());
         }
-        self.kick(0.5 * dt, 0.0)?;
+        parallel::inside(|| self.kick(0.5 * dt, 0.0))?;
         if !at_rest {
             self.has_to_be_at_rest()?;
         }

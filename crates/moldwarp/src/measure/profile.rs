@@ -8,8 +8,7 @@ use std::time::{Duration, Instant};
 pub enum Part {
     Remap,
     Strain,
-    Stress,
-    Move,
+    Points,
     Mesh,
     Locate,
     Order,
@@ -25,11 +24,10 @@ pub enum Part {
 
 impl Part {
     /// All parts in the order in which a step goes through them, as people call them.
-    pub const ALL: [(Part, &'static str); 15] = [
+    pub const ALL: [(Part, &'static str); 14] = [
         (Part::Remap, "4 remap"),
         (Part::Strain, "5 strain"),
-        (Part::Stress, "6 stress"),
-        (Part::Move, "7 move"),
+        (Part::Points, "6 stress, 7 move, 1 sums"),
         (Part::Mesh, "8 mesh"),
         (Part::Locate, "8 elements of particles"),
         (Part::Order, "8 order of particles"),

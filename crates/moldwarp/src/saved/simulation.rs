@@ -210,7 +210,9 @@ impl Simulation {
         for (&p, e) in homes.iter().zip(own) {
             self.particles.element[p as usize] = e;
         }
-        check("guests", homes.is_empty() || self.regroup())
+        let none = homes.is_empty();
+        self.guests.expect(homes);
+        check("guests", none || self.regroup())
     }
 
     /// Takes over what the last kick has left at nodes and in cells.

@@ -91,6 +91,8 @@ impl crate::saved::Saved for Cells {
             forces,
             strains: _,
             portions: _,
+            // Made anew.
+            summed: _,
         } = self;
         sums.save(out);
         pairs.save(out);

@@ -266,6 +266,11 @@ impl Active {
         tiles.replace(*own_tiles, cells, lane, put);
     }
 
+    /// Number of tiles without those of guests.
+    pub fn own_tiles(&self) -> usize {
+        self.own_tiles
+    }
+
     /// The lanes of guests.
     pub fn guest_lanes(&self) -> Range<usize> {
         self.own_tiles * LANES..self.elements.len()

@@ -5,10 +5,13 @@
 //! adds up its portions, in their order. So memory is read and written in sequence, no two threads write to
 //! the same place, and sums have the same bits with any number of threads. (A node that looks its cells up
 //! waits for memory: four to eight times as long.)
+//!
+//! Guests (`guests.rs`) have portions of their own, so that what nodes have been given by all others stays as it is
+//! when guests change.
 
 use super::shapes::{Corners, corner};
 use crate::lanes::LANES;
-use crate::parallel::Split;
+use crate::parallel::{self, Split, Sum};
 use std::ops::Range;
 
 /// Portions that cells are cut into, unless they would have fewer tiles than [`LEAST`].
@@ -20,11 +23,42 @@ const MOST: usize = 6;
 /// The portions, and what their nodes have been given.
 #[derive(Clone, Debug, Default)]
 pub struct Portions {
-    /// Tiles of a portion; the last may have fewer.
-    pub tiles: usize,
+    cut: Cut,
+    /// All tiles.
     count: usize,
     windows: Vec<Window>,
     numbers: Vec<f64>,
+}
+
+/// How tiles are cut into portions.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cut {
+    /// Tiles of a portion; the last one, and the last one of guests, may have fewer.
+    tiles: usize,
+    /// Tiles without those of guests.
+    own: usize,
+}
+
+impl Cut {
+    /// Calls `work` on one portion after another, and adds up what it returns.
+    pub fn fold<S: Split, T: Sum>(self, items: S, work: &(impl Fn(S) -> T + Sync)) -> T {
+        if items.count() <= self.own {
+            return parallel::fold(items, self.tiles, work);
+        }
+        let (own, guests) = items.split(self.own);
+        let (own, guests) = rayon::join(
+            || parallel::fold(own, self.tiles, work),
+            || parallel::fold(guests, self.tiles, work),
+        );
+        own.plus(guests)
+    }
+
+    /// The same for the portions of guests only.
+    pub fn fold_guests<S: Split>(self, items: S, work: &(impl Fn(S) + Sync)) {
+        if items.count() > self.own {
+            parallel::fold(items.split(self.own).1, self.tiles, work);
+        }
+    }
 }
 
 /// The nodes that a portion's cells have.
@@ -43,13 +77,28 @@ impl Window {
 }
 
 impl Portions {
-    /// Of cells with these nodes, tile after tile.
-    pub fn renew(&mut self, cell_nodes: &[[u32; 4]]) {
-        self.count = cell_nodes.len() / LANES;
-        self.tiles = self.count.div_ceil(PORTIONS).max(LEAST);
+    /// Of cells with these nodes, tile after tile, of which the first tiles are `own`.
+    pub fn renew(&mut self, cell_nodes: &[[u32; 4]], own: usize) {
+        let tiles = own.div_ceil(PORTIONS).max(LEAST);
+        self.cut = Cut { tiles, own };
         self.windows.clear();
-        let mut before = 0;
-        for cells in cell_nodes.chunks(self.tiles * LANES) {
+        let (own, guests) = cell_nodes.split_at(own * LANES);
+        self.add(own);
+        self.add(guests);
+        self.count = cell_nodes.len() / LANES;
+    }
+
+    /// The same after guests have changed. What others have given stays.
+    pub fn renew_guests(&mut self, cell_nodes: &[[u32; 4]]) {
+        let own = self.cut.own;
+        self.windows.truncate(own.div_ceil(self.cut.tiles));
+        self.add(&cell_nodes[own * LANES..]);
+        self.count = cell_nodes.len() / LANES;
+    }
+
+    fn add(&mut self, cell_nodes: &[[u32; 4]]) {
+        let mut before = self.windows.last().map_or(0, |w| w.before + w.count);
+        for cells in cell_nodes.chunks(self.cut.tiles * LANES) {
             let (mut first, mut last) = (u32::MAX, 0);
             for &n in cells.as_flattened() {
                 first = first.min(n);
@@ -66,6 +115,11 @@ impl Portions {
         self.numbers.resize(before * MOST, 0.0);
     }
 
+    /// How tiles are cut.
+    pub fn cut(&self) -> Cut {
+        self.cut
+    }
+
     /// Room for two more portions of so many nodes.
     pub fn make_room(&mut self, nodes: usize) {
         self.windows.reserve(2);
@@ -76,7 +130,7 @@ impl Portions {
     pub fn shares<const N: usize>(&mut self) -> Shares<'_, N> {
         const { assert!(N <= MOST) }
         Shares {
-            tiles: self.tiles,
+            tiles: self.cut.tiles,
             count: self.count,
             windows: &self.windows,
             numbers: self.numbers.as_chunks_mut().0,
@@ -123,8 +177,8 @@ impl<const N: usize> Split for Shares<'_, N> {
     }
 
     fn split(self, at: usize) -> (Self, Self) {
-        debug_assert!(at.is_multiple_of(self.tiles));
-        let (low, high) = self.windows.split_at(at / self.tiles);
+        // Where guests begin, a portion may have fewer tiles.
+        let (low, high) = self.windows.split_at(at.div_ceil(self.tiles));
         let of_low = high[0].before - low[0].before;
         let numbers = self.numbers.split_at_mut(of_low);
         let part = |count, windows, numbers| Shares {
@@ -183,7 +237,6 @@ impl Share<'_, 3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parallel::fold;
 
     /// Cells along a line, each with the next four nodes: every inner node is given each number four times.
     #[test]
@@ -193,14 +246,12 @@ mod tests {
             .map(|c| std::array::from_fn(|i| c + i as u32))
             .collect();
         let mut portions = Portions::default();
-        portions.renew(&cells);
-        let block = portions.tiles;
-        assert!(tiles.div_ceil(block) <= PORTIONS && block >= LEAST);
+        let own = tiles - 11;
+        portions.renew(&cells, own);
+        let cut = portions.cut();
+        assert!(own.div_ceil(cut.tiles) <= PORTIONS && cut.tiles >= LEAST);
         let items = (0..tiles, portions.shares::<2>());
-        fold(items, block, &|(tiles, shares): (
-            Range<usize>,
-            Shares<2>,
-        )| {
+        cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<2>)| {
             let mut share = shares.begin();
             for nodes in &cells[tiles.start * LANES..tiles.end * LANES] {
                 share.give(nodes, |i| [1.0, f64::from(nodes[i])]);

@@ -90,12 +90,9 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
         *given = w(node);
     }
     let (active, given, pairs, simd) = (&*active, &shared.given[..], &cells.pairs[..], *simd);
-    let portion = cells.portions.tiles;
+    let cut = cells.portions.cut();
     let items = (0..pairs.len(), cells.portions.shares());
-    fold(items, portion, &|(tiles, shares): (
-        Range<usize>,
-        Shares<3>,
-    )| {
+    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<3>)| {
         let (mut w, mut sums, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
         for tile in tiles {
             let nodes = active.tile_nodes(tile);

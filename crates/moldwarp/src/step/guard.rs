@@ -1,6 +1,7 @@
 //! Particles never pass a face of an aligned contact: one that would is put back onto its side, keeps
 //! its velocity, and is counted.
 
+use super::state::Summed;
 use crate::Vec3;
 use crate::simulation::Simulation;
 use crate::stop::Stop;
@@ -16,6 +17,7 @@ const TRIES: usize = 4;
 /// Puts back all particles that have passed a face; their elements are still the ones before.
 pub(super) fn put_back(sim: &mut Simulation) -> Result<bool, Stop> {
     let mut crossed = false;
+    sim.cells.summed = Summed::Nothing;
     for p in 0..sim.particles.len() {
         let (before, x) = (sim.particles.element[p], sim.particles.position.at(p));
         if sim.plan.mesh.contains(before, x) {

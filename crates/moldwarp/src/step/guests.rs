@@ -56,6 +56,11 @@ impl Guests {
         own.map(|guest| guest.1 as usize)
     }
 
+    /// Those at these places are guests.
+    pub fn expect(&mut self, homes: Vec<u32>) {
+        self.homes = homes;
+    }
+
     /// All particles are in the elements under which they lie.
     pub fn clear(&mut self) {
         debug_assert!(!self.present);
@@ -162,6 +167,10 @@ impl Simulation {
         let moved = places.filter(|((now, filed), _)| now != filed);
         guests.found.clear();
         guests.found.extend(moved.map(|((&e, _), p)| (e, p)));
+        // Those that have come back stay guests: the sums of the others need not be made anew.
+        let filed = |p: u32| order.filed[p as usize];
+        let back = |&p: &u32| (particles.element[p as usize] == filed(p)).then_some((filed(p), p));
+        guests.found.extend(guests.homes.iter().filter_map(back));
         if guests.found.len() * FEW > particles.len() {
             return false;
         }

@@ -98,12 +98,9 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         let (volume, closed) = (sums[tile].volume[l], stresses[tile].closed[l]);
         weight(force.filled[l], volume, closed, shapes[tile].volume[l])
     };
-    let (portion, known) = (portions.tiles, &forces[..]);
+    let (cut, known) = (portions.cut(), &forces[..]);
     let items = (0..known.len(), portions.shares());
-    fold(items, portion, &|(tiles, shares): (
-        Range<usize>,
-        Shares<2>,
-    )| {
+    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<2>)| {
         let mut share = shares.begin();
         for tile in tiles {
             let (nodes, force) = (active.tile_nodes(tile), &known[tile]);
@@ -118,7 +115,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     means_at_nodes(portions, &mut shared.mean_stress, 12.0);
     let shared = &*shared;
     let items = (0..forces.len(), &mut forces[..], portions.shares());
-    let work = fold(items, portion, &|(tiles, forces, shares): (
+    let work = cut.fold(items, &|(tiles, forces, shares): (
         Range<usize>,
         &mut [CellForce],
         Shares<4>,

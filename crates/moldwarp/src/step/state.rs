@@ -145,6 +145,18 @@ pub struct Cells {
     pub strains: Vec<CellStrain>,
     /// What nodes collect.
     pub portions: Portions,
+    /// Whose sums the last drift has made.
+    pub summed: Summed,
+}
+
+/// Cells that have their sums.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Summed {
+    #[default]
+    Nothing,
+    /// All but those of guests.
+    Own,
+    All,
 }
 
 const ZERO: Lane = Lane::of(0.0);
@@ -214,6 +226,8 @@ impl Cells {
     /// Of these cells.
     pub(crate) fn renew(&mut self, active: &Active, mesh: &Mesh) {
         self.resize(active);
+        self.portions.renew(&active.cell_nodes, active.own_tiles());
+        self.summed = Summed::Nothing;
         self.find_shapes(active, mesh);
     }
 
@@ -225,7 +239,6 @@ impl Cells {
         self.stresses.resize_with(tiles, CellStress::default);
         self.forces.resize_with(tiles, CellForce::default);
         self.strains.resize_with(tiles, CellStrain::default);
-        self.portions.renew(&active.cell_nodes);
     }
 
     /// Room for guests. A portion of theirs may have all nodes.
@@ -242,6 +255,10 @@ impl Cells {
     /// The same after guests have been laid out anew.
     pub(crate) fn renew_guests(&mut self, active: &Active, mesh: &Mesh) {
         self.resize(active);
+        self.portions.renew_guests(&active.cell_nodes);
+        if self.summed == Summed::All {
+            self.summed = Summed::Own;
+        }
         for tile in active.guest_lanes().start / LANES..active.tiles.len() {
             let elements = &active.elements[tile * LANES..(tile + 1) * LANES];
             self.shapes[tile].load(mesh, elements);

@@ -4,7 +4,6 @@ use super::collect::{Share, Shares};
 use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, load_nodes};
 use super::{CellForce, CellStrain, CellStress, CellSums, Cells, smoothing};
 use crate::lanes::{self, LANES, Lane, for_each_simd, get, set};
-use crate::parallel::fold;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3, tensor};
 use std::ops::Range;
@@ -119,9 +118,9 @@ fn gradients(sim: &mut Simulation) {
     } = cells;
     let (shapes, sums) = (&shapes[..], &sums[..]);
     let (stresses, forces) = (&stresses[..], &forces[..]);
-    let portion = portions.tiles;
+    let cut = portions.cut();
     let items = (0..sums.len(), &mut strains[..], portions.shares());
-    let work = fold(items, portion, &|(tiles, strains, shares): (
+    let work = cut.fold(items, &|(tiles, strains, shares): (
         Range<usize>,
         &mut [CellStrain],
         Shares<2>,

@@ -1,31 +1,31 @@
-//! Stage 6: stresses and volumes of particles.
+//! Stage 6: stresses and volumes of particles (`points.rs` goes through them).
 
 mod external;
 
 pub(crate) use external::Answers;
 pub(super) use external::ask;
 
-use super::{CellStrain, TILES, smoothing};
+use super::{CellStrain, Shared, smoothing};
 use crate::Mat3;
 use crate::lanes::{
-    self, ByTile, LANES, Lane, VoigtLanes, either, for_each_simd, get, load, load_one, set, store,
+    self, LANES, Lane, Simd, VoigtLanes, either, for_each_simd, get, load, load_one, set, store,
     store_one, whole,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
-use crate::parallel::{Smallest, Sum, fold};
-use crate::plan::Smoothing;
-use crate::simulation::Simulation;
+use crate::parallel::{Smallest, Sum};
+use crate::plan::{Plan, Smoothing};
 use crate::tensor::{self, Voigt};
+use std::ops::Range;
 
 /// Stresses, state variables and volumes of some particles.
-type Arrays<'a> = (
+pub(super) type Arrays<'a> = (
     [&'a mut [f64]; 6],
     [&'a mut [f64]; STATE_SIZE],
     &'a mut [f64],
 );
 
 /// Cells side by side.
-struct Side {
+pub(super) struct Side {
     /// Volumetric strain, smoothed.
     smoothed: Lane,
     strain: VoigtLanes,
@@ -34,9 +34,9 @@ struct Side {
 }
 
 /// Particles side by side.
-struct Points {
-    increment: Strained,
-    volume: Lane,
+pub(super) struct Points {
+    pub increment: Strained,
+    pub volume: Lane,
     /// 1 where the material is separated and keeps its cell's own volumetric strain.
     separated: Lane,
 }
@@ -44,66 +44,90 @@ struct Points {
 /// Works on particles side by side: [elastic, left out by smoothing, plastic], J.
 type Works = [Lane; 3];
 
-/// Returns whether a particle has lost all its volume.
-pub(super) fn run(sim: &mut Simulation) -> bool {
-    let Simulation {
-        plan,
-        particles,
-        active,
-        shared,
-        cells,
-        ledger,
-        simd,
-        answers,
-        ..
-    } = sim;
-    let (active, shared, strains, simd) = (&*active, &*shared, &cells.strains[..], *simd);
-    let answers = &*answers;
-    let body = &particles.body;
-    let (materials, bodies) = (&plan.materials, &plan.bodies);
-    let model = |body: u16| &materials[bodies[usize::from(body)].material].model;
-    let smooth = plan.numerics.smoothing != Smoothing::Off;
-    let arrays = (
-        particles.stress.components_mut(),
-        particles.state.components_mut(),
-        &mut particles.volume[..],
-    );
-    let all = ByTile::new(&active.tiles, arrays, ());
-    let (work, least) = fold(all, TILES, &|block: ByTile<Arrays, ()>| {
-        let first = block.first();
-        let tiles = block.each();
-        let mut arrays = block.particles;
-        let mut side = Side::default();
-        let mut points = Points::default();
-        let mut works: Works = [Lane::of(0.0); 3];
-        // Volume after the step over that before.
-        let mut least = Lane::of(f64::INFINITY);
-        for (number, tile) in tiles {
-            let own = &strains[number];
-            side.smoothed = own.volumetric;
-            if smooth {
-                let nodes = active.tile_nodes(number);
-                smoothing::means(&mut side.smoothed, nodes, &shared.volumetric);
-            }
-            deform(simd, own, &mut side);
-            for slot in tile.slots() {
-                let (start, place, lanes) = (slot.start - first, slot.start, slot.len());
-                let body = &body[slot];
-                points.look_up(body, model, &arrays, start);
-                strain(simd, own, &side, &mut points, &arrays, start, lanes);
-                points.update(simd, body, model, (answers, place));
-                book(simd, own, &side, &mut points, &mut works, &mut least, lanes);
-                keep(simd, &points, &mut arrays, start, lanes);
-            }
+/// What the stage does to cells one after another.
+pub(super) struct Stresses<'a> {
+    plan: &'a Plan,
+    answers: &'a Answers,
+    simd: Simd,
+    side: Side,
+    pub points: Points,
+    works: Works,
+    /// Volume after the step over that before.
+    least: Lane,
+}
+
+impl<'a> Stresses<'a> {
+    pub fn new(plan: &'a Plan, answers: &'a Answers, simd: Simd) -> Stresses<'a> {
+        Stresses {
+            plan,
+            answers,
+            simd,
+            side: Side::default(),
+            points: Points::default(),
+            works: [Lane::of(0.0); 3],
+            least: Lane::of(f64::INFINITY),
         }
-        let smallest = least
-            .into_iter()
-            .map(Smallest)
-            .fold(Smallest::default(), Sum::plus);
-        (works.each_ref().map(lanes::sum), smallest)
-    });
-    ledger.particle_stress_work(work);
-    least.0 <= 0.0
+    }
+
+    /// Goes to the next cells.
+    #[inline]
+    pub fn enter(&mut self, strains: &CellStrain, nodes: &[[u32; 4]; LANES], shared: &Shared) {
+        let smooth = self.plan.numerics.smoothing != Smoothing::Off;
+        self.side.find(self.simd, strains, smooth, nodes, shared);
+    }
+
+    /// New stresses, state variables and volumes of the particles of a slot of these cells; `first` is the first
+    /// of the arrays.
+    #[inline]
+    pub fn update(
+        &mut self,
+        strains: &CellStrain,
+        slot: Range<usize>,
+        body: &[u16],
+        arrays: &mut Arrays,
+        first: usize,
+    ) {
+        let Stresses {
+            plan,
+            answers,
+            simd,
+            side,
+            points,
+            works,
+            least,
+        } = self;
+        let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
+        let (start, place, lanes) = (slot.start - first, slot.start, slot.len());
+        points.look_up(body, model, arrays, start);
+        strain(*simd, strains, side, points, arrays, start, lanes);
+        points.update(*simd, body, model, (answers, place));
+        book(*simd, strains, side, points, works, least, lanes);
+        keep(*simd, points, arrays, start, lanes);
+    }
+
+    /// The works, and the smallest share of its volume that a particle has kept.
+    pub fn end(self) -> ([f64; 3], Smallest) {
+        let smallest = (self.least.into_iter().map(Smallest)).fold(Smallest::default(), Sum::plus);
+        (self.works.each_ref().map(lanes::sum), smallest)
+    }
+}
+
+impl Side {
+    /// Strains and rotations of the next cells.
+    fn find(
+        &mut self,
+        simd: Simd,
+        strains: &CellStrain,
+        smooth: bool,
+        nodes: &[[u32; 4]; LANES],
+        shared: &Shared,
+    ) {
+        self.smoothed = strains.volumetric;
+        if smooth {
+            smoothing::means(&mut self.smoothed, nodes, &shared.volumetric);
+        }
+        deform(simd, strains, self);
+    }
 }
 
 impl Default for Side {

@@ -1,30 +1,28 @@
 //! Sums over the particles of each cell, the first part of stage 1.
+//!
+//! In a mesh that stays they are made at the end of the drift, while particles are at hand (`points.rs`); what that could
+//! not know, or all of it, is made up for here.
 
 use super::collect::{Share, Shares};
 use super::correction::PAIRS;
 use super::shapes::{Corners, NO_CORNERS, Shapes, corner, set_corner};
-use super::{CellPairs, CellStress, CellSums};
+use super::state::Summed;
+use super::{CellPairs, CellStress, CellSums, Reference};
 use crate::Vec3;
 use crate::lanes::{
-    ByTile, LANES, Lane, VoigtLanes, for_each_simd, get, load, load_one, set, whole,
+    ByTile, Contents, LANES, Lane, Simd, VoigtLanes, for_each_simd, get, load, load_one, set, whole,
 };
-use crate::parallel::fold;
+use crate::material::STATE_SIZE;
 use crate::particles::Particles;
 use crate::plan::Plan;
 use crate::simulation::Simulation;
-use std::ops::Range;
 
 /// What nodes are given: Σ m_p v_p N_i, Σ m_p N_i, and of the whole cell Σ V_p without what has opened and
 /// Σ m_p.
 pub(super) type Given = [f64; 6];
 
-/// Particles side by side.
-struct Side {
-    x: [Lane; 3],
-    v: [Lane; 3],
-    mass: Lane,
-    volume: Lane,
-    stress: VoigtLanes,
+/// What the sums of cells side by side are made of, beside what their records have.
+pub(super) struct Sums {
     /// Shares of the volume that have not opened, and that are not separated.
     shares: [Lane; 2],
     /// λ, G and E_c, Pa.
@@ -33,167 +31,149 @@ struct Side {
     momentum: Corners,
 }
 
-impl Default for Side {
-    fn default() -> Side {
-        let vector = [Lane::of(0.0); 3];
-        Side {
-            x: vector,
-            v: vector,
-            mass: Lane::of(0.0),
-            volume: Lane::of(0.0),
-            stress: [Lane::of(0.0); 6],
+impl Default for Sums {
+    fn default() -> Sums {
+        Sums {
             shares: [Lane::of(1.0); 2],
-            elasticity: vector,
+            elasticity: [Lane::of(0.0); 3],
             momentum: NO_CORNERS,
         }
     }
 }
 
+/// The records of a tile.
+pub(super) struct Records<'a> {
+    pub sum: &'a mut CellSums,
+    pub pairs: &'a mut CellPairs,
+    pub stress: &'a mut CellStress,
+}
+
+/// Particles side by side. What counts for nothing has no mass and no volume.
+#[derive(Clone, Copy)]
+pub(super) struct Counted<'a> {
+    /// N_i.
+    pub shapes: &'a [Lane; 4],
+    pub position: &'a [Lane; 3],
+    pub velocity: &'a [Lane; 3],
+    pub mass: &'a Lane,
+    pub volume: &'a Lane,
+    pub stress: &'a VoigtLanes,
+    pub state: &'a [Lane; STATE_SIZE],
+}
+
 for_each_simd! {
     /// Adds a particle to each cell.
-    fn add(
-        side: &mut Side,
-        particles: &Particles,
-        slot: &Range<usize>,
-        shapes: &Shapes,
-        sum: &mut CellSums,
-        pairs: &mut CellPairs,
-        stress: &mut CellStress,
-    ) {
-        let (start, lanes) = (slot.start, slot.len());
-        load(&mut side.x, &particles.position.components(), start);
-        load(&mut side.v, &particles.velocity.components(), start);
-        load(&mut side.stress, &particles.stress.components(), start);
-        load_one(&mut side.mass, &particles.mass, start);
-        load_one(&mut side.volume, &particles.volume, start);
-        for l in lanes..whole(lanes) {
-            (side.mass[l], side.volume[l]) = (0.0, 0.0);
-        }
+    fn add(sums: &mut Sums, points: &Counted, records: &mut Records, lanes: usize) {
+        let Records { sum, pairs, stress } = records;
         for l in 0..whole(lanes) {
-            let n = shapes.at(l, Vec3::from_array(get(&side.x, l)));
-            let (m, v) = (side.mass[l], Vec3::from_array(get(&side.v, l)));
+            let n = get(points.shapes, l);
+            let (m, v) = (points.mass[l], Vec3::from_array(get(points.velocity, l)));
             for i in 0..4 {
                 let share = n[i] * m;
                 sum.mass[i][l] += share;
-                let momentum = corner(&side.momentum, l, i) + v * share;
-                set_corner(&mut side.momentum, l, i, momentum);
+                let momentum = corner(&sums.momentum, l, i) + v * share;
+                set_corner(&mut sums.momentum, l, i, momentum);
             }
             for k in 0..6 {
                 let (i, j) = PAIRS[k];
                 pairs[k][l] += n[i] * n[j] * m;
             }
-            let volume = side.volume[l];
+            let volume = points.volume[l];
             for k in 0..6 {
-                stress.stress[k][l] += side.stress[k][l] * volume;
+                stress.stress[k][l] += points.stress[k][l] * volume;
             }
             sum.volume[l] += volume;
-            sum.solid[l] += volume * side.shares[0][l];
-            stress.closed[l] += volume * side.shares[1][l];
+            sum.solid[l] += volume * sums.shares[0][l];
+            stress.closed[l] += volume * sums.shares[1][l];
             for k in 0..2 {
-                stress.moduli[k][l] += volume * side.elasticity[k][l];
+                stress.moduli[k][l] += volume * sums.elasticity[k][l];
             }
         }
         for l in 0..lanes {
-            stress.wave_modulus[l] = stress.wave_modulus[l].max(side.elasticity[2][l]);
+            stress.wave_modulus[l] = stress.wave_modulus[l].max(sums.elasticity[2][l]);
         }
     }
 }
 
 for_each_simd! {
     /// Gives nodes what they collect.
-    fn give(side: &Side, sum: &CellSums, nodes: &[[u32; 4]; LANES], share: &mut Share<6>) {
+    fn give(sums: &Sums, sum: &CellSums, nodes: &[[u32; 4]; LANES], share: &mut Share<6>) {
         for l in 0..LANES {
             let (mass, solid) = (get(&sum.mass, l), sum.solid[l]);
             let all = mass[0] + mass[1] + mass[2] + mass[3];
             share.give(&nodes[l], |i| {
-                let [x, y, z] = corner(&side.momentum, l, i).to_array();
+                let [x, y, z] = corner(&sums.momentum, l, i).to_array();
                 [x, y, z, mass[i], solid, all]
             });
         }
     }
 }
 
-/// Sums of all cells.
-pub(super) fn run(sim: &mut Simulation) {
-    let Simulation {
-        plan,
-        particles,
-        active,
-        cells,
-        elasticity,
-        reference,
-        simd,
-        ..
-    } = sim;
-    let (active, particles, elasticity) = (&*active, &*particles, &*elasticity);
-    let (reference, simd) = (reference.as_ref(), *simd);
-    type Sums<'a> = (
-        &'a mut [CellSums],
-        &'a mut [CellPairs],
-        &'a mut [CellStress],
-    );
-    let sums = (
-        &mut cells.sums[..],
-        &mut cells.pairs[..],
-        &mut cells.stresses[..],
-    );
-    let shapes = &cells.shapes[..];
-    type Records<'a> = (Sums<'a>, Shares<'a, 6>, &'a [Shapes]);
-    let portion = cells.portions.tiles;
-    let shares = cells.portions.shares();
-    let all = ByTile::new(&active.tiles, (), (sums, shares, shapes));
-    fold(all, portion, &|block: ByTile<(), Records>| {
-        let tiles = block.each();
-        let ((sums, pairs, stresses), shares, shapes) = block.cells;
-        let (mut side, mut share) = (Side::default(), shares.begin());
-        let records = sums.iter_mut().zip(pairs).zip(stresses).zip(shapes);
-        for ((number, tile), (((sum, pairs), stress), shapes)) in tiles.zip(records) {
-            *sum = CellSums::default();
-            *pairs = CellPairs::default();
-            *stress = CellStress::default();
-            side.momentum = NO_CORNERS;
-            for slot in tile.slots() {
-                side.look_up(plan, elasticity, particles, slot.clone());
-                add(
-                    simd, &mut side, particles, &slot, shapes, sum, pairs, stress,
-                );
-                let Some(reference) = reference else { continue };
-                for (l, p) in slot.enumerate() {
-                    let body = usize::from(particles.body[p]);
-                    let (x, volume) = (particles.position.at(p), particles.volume[p]);
-                    reference.add(stress, l, body, x, volume);
-                }
-            }
-            if !tile.helpers.is_empty() {
-                let lanes = (sum.lanes())
-                    .chain(&mut side.momentum)
-                    .chain(pairs)
-                    .chain(stress.lanes());
-                tile.gather(lanes);
-                for helper in tile.helpers {
-                    let [from, to] = [helper.lane, helper.of].map(usize::from);
-                    let moduli = &mut stress.wave_modulus;
-                    moduli[to] = moduli[to].max(moduli[from]);
-                }
-            }
-            give(simd, &side, sum, active.tile_nodes(number), &mut share);
-        }
-    });
+/// What is asked of all particles.
+#[derive(Clone, Copy)]
+pub(super) struct Asked<'a> {
+    pub plan: &'a Plan,
+    pub elasticity: &'a [[f64; 3]],
+    pub reference: Option<&'a Reference>,
+    pub simd: Simd,
 }
 
-impl Side {
-    /// What materials say of the particles of a slot.
-    fn look_up(
+impl Sums {
+    /// Goes to the next cells.
+    #[inline]
+    pub fn enter(&mut self, records: &mut Records) {
+        *records.sum = CellSums::default();
+        *records.pairs = CellPairs::default();
+        *records.stress = CellStress::default();
+        self.momentum = NO_CORNERS;
+    }
+
+    /// Adds the particles of a slot.
+    #[inline]
+    pub fn add(&mut self, asked: &Asked, points: &Counted, bodies: &[u16], records: &mut Records) {
+        self.look_up(asked, points, bodies);
+        add(asked.simd, self, points, records, bodies.len());
+        let Some(reference) = asked.reference else {
+            return;
+        };
+        for (l, &body) in bodies.iter().enumerate() {
+            let x = Vec3::from_array(get(points.position, l));
+            reference.add(records.stress, l, usize::from(body), x, points.volume[l]);
+        }
+    }
+
+    /// Puts together what lanes of the same cell have, and gives nodes what they collect.
+    #[inline]
+    pub fn leave(
         &mut self,
-        plan: &Plan,
-        elasticity: &[[f64; 3]],
-        particles: &Particles,
-        slot: Range<usize>,
+        simd: Simd,
+        tile: Contents,
+        records: &mut Records,
+        nodes: &[[u32; 4]; LANES],
+        share: &mut Share<6>,
     ) {
+        let Records { sum, pairs, stress } = records;
+        if !tile.helpers.is_empty() {
+            let lanes = (sum.lanes())
+                .chain(&mut self.momentum)
+                .chain(pairs.iter_mut())
+                .chain(stress.lanes());
+            tile.gather(lanes);
+            for helper in tile.helpers {
+                let [from, to] = [helper.lane, helper.of].map(usize::from);
+                let moduli = &mut stress.wave_modulus;
+                moduli[to] = moduli[to].max(moduli[from]);
+            }
+        }
+        give(simd, self, sum, nodes, share);
+    }
+
+    /// What materials say of the particles of a slot.
+    #[inline]
+    fn look_up(&mut self, asked: &Asked, points: &Counted, bodies: &[u16]) {
+        let (plan, elasticity) = (asked.plan, asked.elasticity);
         let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
-        let bodies = &particles.body[slot.clone()];
-        let first = bodies[0];
-        let lanes = slot.len();
+        let (first, lanes) = (bodies[0], bodies.len());
         let alike = bodies.iter().all(|&b| b == first);
         if alike {
             for (lane, modulus) in (self.elasticity.iter_mut()).zip(elasticity[usize::from(first)])
@@ -207,19 +187,138 @@ impl Side {
         }
         let closed = alike
             && model(first).opening().is_none_or(|k| {
-                let opening = &particles.state.components()[k][slot.clone()];
+                let opening = &points.state[k][..lanes];
                 opening.iter().all(|&w| w == 0.0)
             });
         if closed {
             self.shares.iter_mut().for_each(|s| s[..lanes].fill(1.0));
             return;
         }
-        for (l, p) in slot.enumerate() {
-            let (stress, state) = (particles.stress.at(p), particles.state.at(p));
-            let model = model(bodies[l]);
+        for (l, &body) in bodies.iter().enumerate() {
+            let (stress, state) = (get(points.stress, l), get(points.state, l));
+            let model = model(body);
             let closed = !model.is_separated(&stress, &state);
             let shares = [model.solid_share(&state), f64::from(u8::from(closed))];
             set(&mut self.shares, l, shares);
         }
+    }
+}
+
+/// Particles side by side, as they lie in memory.
+struct Side {
+    shapes: [Lane; 4],
+    position: [Lane; 3],
+    velocity: [Lane; 3],
+    mass: Lane,
+    volume: Lane,
+    stress: VoigtLanes,
+    state: [Lane; STATE_SIZE],
+}
+
+impl Default for Side {
+    fn default() -> Side {
+        let vector = [Lane::of(0.0); 3];
+        Side {
+            shapes: [Lane::of(0.0); 4],
+            position: vector,
+            velocity: vector,
+            mass: Lane::of(0.0),
+            volume: Lane::of(0.0),
+            stress: [Lane::of(0.0); 6],
+            state: [Lane::of(0.0); STATE_SIZE],
+        }
+    }
+}
+
+for_each_simd! {
+    fn fetch(side: &mut Side, particles: &Particles, start: usize, shapes: &Shapes, lanes: usize) {
+        load(&mut side.position, &particles.position.components(), start);
+        load(&mut side.velocity, &particles.velocity.components(), start);
+        load(&mut side.stress, &particles.stress.components(), start);
+        load(&mut side.state, &particles.state.components(), start);
+        load_one(&mut side.mass, &particles.mass, start);
+        load_one(&mut side.volume, &particles.volume, start);
+        for l in lanes..whole(lanes) {
+            (side.mass[l], side.volume[l]) = (0.0, 0.0);
+        }
+        for l in 0..whole(lanes) {
+            let n = shapes.at(l, Vec3::from_array(get(&side.position, l)));
+            set(&mut side.shapes, l, n);
+        }
+    }
+}
+
+/// The sums that the last drift has not made: of all cells, or of those of guests.
+pub(super) fn run(sim: &mut Simulation) {
+    let Simulation {
+        plan,
+        particles,
+        active,
+        cells,
+        elasticity,
+        reference,
+        simd,
+        ..
+    } = sim;
+    let (active, particles) = (&*active, &*particles);
+    let asked = Asked {
+        plan,
+        elasticity,
+        reference: reference.as_ref(),
+        simd: *simd,
+    };
+    type Arrays<'a> = (
+        &'a mut [CellSums],
+        &'a mut [CellPairs],
+        &'a mut [CellStress],
+    );
+    let made = std::mem::take(&mut cells.summed);
+    if made == Summed::All {
+        return;
+    }
+    let arrays = (
+        &mut cells.sums[..],
+        &mut cells.pairs[..],
+        &mut cells.stresses[..],
+    );
+    let cut = cells.portions.cut();
+    let shares = cells.portions.shares();
+    type All<'a> = (Arrays<'a>, Shares<'a, 6>, &'a [Shapes]);
+    let all = ByTile::new(&active.tiles, (), (arrays, shares, &cells.shapes[..]));
+    let work = |block: ByTile<(), All>| {
+        let tiles = block.each();
+        let ((cell_sums, pairs, stresses), shares, shapes) = block.cells;
+        let (mut side, mut sums, mut share) = (Side::default(), Sums::default(), shares.begin());
+        let arrays = cell_sums.iter_mut().zip(pairs).zip(stresses).zip(shapes);
+        for ((number, tile), (((sum, pairs), stress), shapes)) in tiles.zip(arrays) {
+            let mut records = Records { sum, pairs, stress };
+            sums.enter(&mut records);
+            for slot in tile.slots() {
+                fetch(
+                    asked.simd,
+                    &mut side,
+                    particles,
+                    slot.start,
+                    shapes,
+                    slot.len(),
+                );
+                let points = Counted {
+                    shapes: &side.shapes,
+                    position: &side.position,
+                    velocity: &side.velocity,
+                    mass: &side.mass,
+                    volume: &side.volume,
+                    stress: &side.stress,
+                    state: &side.state,
+                };
+                sums.add(&asked, &points, &particles.body[slot], &mut records);
+            }
+            let nodes = active.tile_nodes(number);
+            sums.leave(asked.simd, tile, &mut records, nodes, &mut share);
+        }
+    };
+    match made {
+        Summed::Own => cut.fold_guests(all, &work),
+        _ => cut.fold(all, &work),
     }
 }

@@ -120,9 +120,9 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     let (shapes, sums, stresses) = (&shapes[..], &sums[..], &stresses[..]);
     // Else forces are pushed when their stresses have been smoothed.
     let last = plan.numerics.smoothing != Smoothing::Conjugate;
-    let portion = portions.tiles;
+    let cut = portions.cut();
     let items = (0..sums.len(), &mut forces[..], portions.shares());
-    let work = fold(items, portion, &|(range, forces, shares): (
+    let work = cut.fold(items, &|(range, forces, shares): (
         Range<usize>,
         &mut [CellForce],
         Shares<4>,

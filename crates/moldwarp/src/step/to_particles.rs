@@ -68,11 +68,11 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let (position, mass) = (particles.position.components(), &particles.mass[..]);
     type Velocities<'a> = [&'a mut [f64]; 3];
     let velocities = particles.velocity.components_mut();
-    let portion = cells.portions.tiles;
+    let cut = cells.portions.cut();
     let records = (cells.portions.shares(), &cells.shapes[..]);
     let all = ByTile::new(&active.tiles, velocities, records);
     type Records<'a> = (Shares<'a, 3>, &'a [Shapes]);
-    let sums = fold(all, portion, &|block: ByTile<Velocities, Records>| {
+    let sums = cut.fold(all, &|block: ByTile<Velocities, Records>| {
         let first = block.first();
         let tiles = block.each();
         let (mut velocity, (shares, shapes)) = (block.particles, block.cells);

@@ -5,7 +5,7 @@
 //! the pass then finds their answers where it would call another model. Works and volumes it books as
 //! for any other.
 
-use super::{Arrays, Points, Side, deform, smoothing, strain};
+use super::{Arrays, Points, Side, strain};
 use crate::lanes::{ByTile, load, store};
 use crate::material::{External, Increments, Material, Strained};
 use crate::parallel::fold;
@@ -256,13 +256,8 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         let mut side = Side::default();
         let mut points = Points::default();
         for (number, tile) in tiles {
-            let own = &strains[number];
-            side.smoothed = own.volumetric;
-            if smooth {
-                let nodes = active.tile_nodes(number);
-                smoothing::means(&mut side.smoothed, nodes, &shared.volumetric);
-            }
-            deform(simd, own, &mut side);
+            let (own, nodes) = (&strains[number], active.tile_nodes(number));
+            side.find(simd, own, smooth, nodes, shared);
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let body = &body[slot];

@@ -1,0 +1,192 @@
+//! Stage 7: particles move with the nodes, x_p += Σ N_i Δu_i (Jassim et al. Eq. 9), and are looked for where they
+//! have come to (`points.rs` goes through them).
+
+use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, interpolate, load_nodes};
+use crate::Vec3;
+use crate::boundary::Outflow;
+use crate::contact::{Contacts, Fields};
+use crate::lanes::{
+    LANES, Lane, either, for_each_simd, get, load, load_one, set, store, sum, whole,
+};
+use crate::mesh::{Mesh, NONE};
+use crate::parallel::{First, Sum};
+use std::ops::Range;
+
+/// Cells and particles side by side.
+pub(super) struct Motion {
+    moved: Corners,
+    pub position: [Lane; 3],
+    pub mass: Lane,
+    /// N_i where the particle has come to.
+    pub shapes: [Lane; 4],
+    /// Work of gravity, J.
+    work: Lane,
+    /// 1 where a particle has left its element as it was.
+    left: Lane,
+}
+
+impl Default for Motion {
+    fn default() -> Motion {
+        let vector = [Lane::of(0.0); 3];
+        Motion {
+            moved: NO_CORNERS,
+            position: vector,
+            mass: Lane::of(0.0),
+            shapes: [Lane::of(0.0); 4],
+            work: Lane::of(0.0),
+            left: Lane::of(0.0),
+        }
+    }
+}
+
+#[inline(always)]
+fn is_inside(n: [f64; 4]) -> bool {
+    (n[0] >= 0.0) & (n[1] >= 0.0) & (n[2] >= 0.0) & (n[3] >= 0.0)
+}
+
+for_each_simd! {
+    /// Moves particles.
+    pub(super) fn go_along(
+        motion: &mut Motion,
+        shapes: &Shapes,
+        gravity: Vec3,
+        mass: &[f64],
+        position: &mut [&mut [f64]; 3],
+        start: usize,
+        lanes: usize,
+    ) {
+        load(&mut motion.position, &position.each_ref().map(|x| &**x), start);
+        load_one(&mut motion.mass, mass, 0);
+        motion.mass[lanes..whole(lanes)].fill(0.0);
+        for l in 0..whole(lanes) {
+            let mut x = Vec3::from_array(get(&motion.position, l));
+            let step = interpolate(shapes.at(l, x), all_corners(&motion.moved, l));
+            x += step;
+            set(&mut motion.position, l, x.to_array());
+            motion.work[l] += motion.mass[l] * gravity.dot(step);
+            let n = shapes.at(l, x);
+            set(&mut motion.shapes, l, n);
+            // Where a guest comes from lies a particle without mass.
+            let stays = is_inside(n) | (motion.mass[l] == 0.0);
+            motion.left[l] = either(stays, 0.0, 1.0);
+        }
+        store(&motion.position, position, start, lanes);
+    }
+}
+
+for_each_simd! {
+    /// Finds out which particles have left their elements, as these are now.
+    pub(super) fn look(
+        motion: &mut Motion,
+        shapes: &Shapes,
+        position: &[&[f64]; 3],
+        start: usize,
+        lanes: usize,
+    ) {
+        load(&mut motion.position, position, start);
+        for l in 0..whole(lanes) {
+            let x = Vec3::from_array(get(&motion.position, l));
+            motion.left[l] = either(is_inside(shapes.at(l, x)), 0.0, 1.0);
+        }
+    }
+}
+
+impl Motion {
+    /// Goes to the next cells.
+    #[inline]
+    pub fn enter(&mut self, nodes: &[[u32; 4]; LANES], moved: &[Vec3]) {
+        load_nodes(&mut self.moved, nodes, moved);
+    }
+
+    /// Finds the elements of the particles of a slot that have left theirs. Those that have come to another one have
+    /// no mass here any more, and `gone` is told their lanes.
+    #[inline]
+    pub fn search(
+        &mut self,
+        search: &Search,
+        slot: Range<usize>,
+        elements: &mut [u32],
+        crossing: &mut Crossing,
+        mut gone: impl FnMut(usize),
+    ) {
+        if self.left[..slot.len()].iter().all(|&left| left == 0.0) {
+            return;
+        }
+        for (l, p) in slot.enumerate() {
+            let x = Vec3::from_array(get(&self.position, l));
+            if self.left[l] != 0.0 && search.walk(p, x, &mut elements[l], crossing) {
+                self.mass[l] = 0.0;
+                gone(l);
+            }
+        }
+    }
+
+    /// Work of gravity on all particles, J.
+    pub fn work(&self) -> f64 {
+        sum(&self.work)
+    }
+}
+
+/// Particles that have come to another element, by their places; the first of each kind.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Crossing {
+    /// Out of the mesh.
+    pub outside: First,
+    /// Into another element.
+    pub crossed: First,
+    /// Across a face that they must not pass: they are still in the old element.
+    pub passed: First,
+    /// Out of the mesh, through an outflow surface: they are in no element.
+    pub gone: First,
+}
+
+impl Sum for Crossing {
+    fn plus(self, other: Crossing) -> Crossing {
+        Crossing {
+            outside: self.outside.plus(other.outside),
+            crossed: self.crossed.plus(other.crossed),
+            passed: self.passed.plus(other.passed),
+            gone: self.gone.plus(other.gone),
+        }
+    }
+}
+
+/// What it takes to find a particle's element.
+pub(super) struct Search<'a> {
+    pub mesh: &'a Mesh,
+    pub fields: &'a Fields,
+    pub contacts: &'a Contacts,
+    pub outflow: &'a Outflow,
+    pub body: &'a [u16],
+}
+
+impl Search<'_> {
+    /// Whether a particle is of a rigid body, which goes as a whole or stays.
+    fn is_rigid(&self, p: usize) -> bool {
+        let field = self.fields.of(self.body[p]);
+        let rigid = self.contacts.rigid_of_field.get(field);
+        rigid.is_some_and(Option::is_some)
+    }
+
+    /// Walks particle `p` to its element. False if that is the one where it was.
+    fn walk(&self, p: usize, x: Vec3, element: &mut u32, crossing: &mut Crossing) -> bool {
+        match self.mesh.walk_or_leave(*element, x) {
+            Ok(found) if found == *element => return false,
+            Ok(found) => {
+                let field = self.fields.of(self.body[p]);
+                if self.contacts.blocks(field, *element, found) {
+                    crossing.passed.note(p);
+                } else {
+                    *element = found;
+                    crossing.crossed.note(p);
+                }
+            }
+            Err(Some(face)) if self.outflow.lets_out(face) && !self.is_rigid(p) => {
+                *element = NONE;
+                crossing.gone.note(p);
+            }
+            Err(_) => crossing.outside.note(p),
+        }
+        true
+    }
+}

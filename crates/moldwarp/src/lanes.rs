@@ -438,6 +438,36 @@ pub fn load_one(lane: &mut Lane, column: &[f64], start: usize) {
     }
 }
 
+/// Has the numbers of the particles of a slot fetched from memory, to be there when it is their turn.
+#[inline(always)]
+pub fn prefetch<const N: usize>(columns: &[&[f64]; N], start: usize) {
+    #[cfg(target_arch = "x86_64")]
+    for column in columns {
+        for line in 0..LANES / 8 {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            let place = column.as_ptr().wrapping_add(start + 8 * line);
+            // SAFETY: a hint may have any address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast()) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (columns, start);
+}
+
+/// The same for a record.
+#[inline(always)]
+pub fn prefetch_record<T>(records: &[T], number: usize) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..size_of::<T>() / 64 {
+        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        let place = records.as_ptr().wrapping_add(number).cast::<i8>();
+        // SAFETY: a hint may have any address.
+        unsafe { _mm_prefetch::<_MM_HINT_T1>(place.wrapping_add(64 * line)) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (records, number);
+}
+
 /// Copies the first numbers of lanes to the particles from `start` on.
 #[inline(always)]
 pub fn store<const N: usize>(

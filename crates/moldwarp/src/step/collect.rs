@@ -9,16 +9,16 @@
 //! Guests (`guests.rs`) have portions of their own, so that what nodes have been given by all others stays as it is
 //! when guests change.
 
-use super::shapes::{Corners, corner};
-use crate::lanes::LANES;
+use super::corners::{Corners, Quad, add_alike, add_corners};
+use crate::lanes::{LANES, Lane, Simd};
 use crate::parallel::{self, Split, Sum};
 use std::ops::Range;
 
 /// Portions that cells are cut into, unless they would have fewer tiles than [`LEAST`].
 const PORTIONS: usize = 32;
 const LEAST: usize = 8;
-/// Most numbers that a node collects at a time.
-const MOST: usize = 6;
+/// Most quads that a node collects at a time.
+const MOST: usize = 2;
 
 /// The portions, and what their nodes have been given.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +27,7 @@ pub struct Portions {
     /// All tiles.
     count: usize,
     windows: Vec<Window>,
-    numbers: Vec<f64>,
+    quads: Vec<Quad>,
 }
 
 /// How tiles are cut into portions.
@@ -112,7 +112,7 @@ impl Portions {
             });
             before += count;
         }
-        self.numbers.resize(before * MOST, 0.0);
+        self.quads.resize(before * MOST, Quad::default());
     }
 
     /// How tiles are cut.
@@ -123,39 +123,37 @@ impl Portions {
     /// Room for two more portions of so many nodes.
     pub fn make_room(&mut self, nodes: usize) {
         self.windows.reserve(2);
-        self.numbers.reserve(2 * nodes * MOST);
+        self.quads.reserve(2 * nodes * MOST);
     }
 
-    /// To be split at portions, with other things kept by tile: what nodes are given N numbers of.
+    /// To be split at portions, with other things kept by tile: what nodes are given N quads of.
     pub fn shares<const N: usize>(&mut self) -> Shares<'_, N> {
         const { assert!(N <= MOST) }
         Shares {
             tiles: self.cut.tiles,
             count: self.count,
             windows: &self.windows,
-            numbers: self.numbers.as_chunks_mut().0,
+            quads: &mut self.quads,
         }
     }
 
-    /// The sums of these nodes.
+    /// The sums of these nodes, by quads.
     pub fn sums<const N: usize, const NODES: usize>(
         &self,
         nodes: Range<usize>,
-    ) -> [[f64; N]; NODES] {
-        let numbers: &[[f64; N]] = self.numbers.as_chunks().0;
-        let mut sums = [[0.0; N]; NODES];
+    ) -> [[Quad; NODES]; N] {
+        let mut sums = [[Quad::default(); NODES]; N];
         for window in &self.windows {
             let own = window.nodes();
             let both = own.start.max(nodes.start)..own.end.min(nodes.end);
             if both.is_empty() {
                 continue;
             }
-            let at = window.before + both.start - own.start;
-            let given = &numbers[at..at + both.len()];
-            let sums = &mut sums[both.start - nodes.start..];
-            for (sum, given) in sums.iter_mut().zip(given) {
-                for k in 0..N {
-                    sum[k] += given[k];
+            for (k, sums) in sums.iter_mut().enumerate() {
+                let at = N * window.before + k * window.count + both.start - own.start;
+                let given = &self.quads[at..at + both.len()];
+                for (sum, given) in sums[both.start - nodes.start..].iter_mut().zip(given) {
+                    *sum += *given;
                 }
             }
         }
@@ -168,7 +166,7 @@ pub struct Shares<'a, const N: usize> {
     tiles: usize,
     count: usize,
     windows: &'a [Window],
-    numbers: &'a mut [[f64; N]],
+    quads: &'a mut [Quad],
 }
 
 impl<const N: usize> Split for Shares<'_, N> {
@@ -180,62 +178,67 @@ impl<const N: usize> Split for Shares<'_, N> {
         // Where guests begin, a portion may have fewer tiles.
         let (low, high) = self.windows.split_at(at.div_ceil(self.tiles));
         let of_low = high[0].before - low[0].before;
-        let numbers = self.numbers.split_at_mut(of_low);
-        let part = |count, windows, numbers| Shares {
+        let quads = self.quads.split_at_mut(N * of_low);
+        let part = |count, windows, quads| Shares {
             tiles: self.tiles,
             count,
             windows,
-            numbers,
+            quads,
         };
-        (
-            part(at, low, numbers.0),
-            part(self.count - at, high, numbers.1),
-        )
+        (part(at, low, quads.0), part(self.count - at, high, quads.1))
     }
 }
 
-/// What the nodes of one portion are given.
+/// What the nodes of one portion are given: quad after quad of all nodes.
 pub struct Share<'a, const N: usize> {
     first: usize,
-    numbers: &'a mut [[f64; N]],
+    count: usize,
+    quads: &'a mut [Quad],
 }
 
 impl<'a, const N: usize> Shares<'a, N> {
     /// Nothing so far, of the only portion.
     pub fn begin(self) -> Share<'a, N> {
         let (first, count) = (self.windows.first()).map_or((0, 0), |w| (w.first, w.count));
-        let numbers = &mut self.numbers[..count];
-        numbers.fill([0.0; N]);
-        Share { first, numbers }
+        let quads = &mut self.quads[..N * count];
+        quads.fill(Quad::default());
+        Share {
+            first,
+            count,
+            quads,
+        }
     }
 }
 
 impl<const N: usize> Share<'_, N> {
-    /// Gives each node of a cell its numbers.
-    #[inline(always)]
-    pub fn give(&mut self, nodes: &[u32; 4], numbers: impl Fn(usize) -> [f64; N]) {
-        for (i, &n) in nodes.iter().enumerate() {
-            let sum = &mut self.numbers[n as usize - self.first];
-            let more = numbers(i);
-            for k in 0..N {
-                sum[k] += more[k];
-            }
-        }
+    fn quad(&mut self, k: usize) -> &mut [Quad] {
+        &mut self.quads[k * self.count..(k + 1) * self.count]
     }
-}
 
-impl Share<'_, 3> {
-    /// Gives each node of cells its vector.
-    #[inline(always)]
-    pub fn give_corners(&mut self, nodes: &[[u32; 4]; LANES], vectors: &Corners) {
-        for (l, nodes) in nodes.iter().enumerate() {
-            self.give(nodes, |i| corner(vectors, l, i).to_array());
-        }
+    /// Gives each node of cells its vector and a number, as its first quad.
+    #[inline]
+    pub fn give(
+        &mut self,
+        simd: Simd,
+        nodes: &[[u32; 4]; LANES],
+        vectors: &Corners,
+        fourth: &[Lane; 4],
+    ) {
+        let first = self.first;
+        add_corners(simd, self.quad(0), first, nodes, vectors, fourth);
+    }
+
+    /// Gives all nodes of cells the same two numbers, as their last quad.
+    #[inline]
+    pub fn give_alike(&mut self, simd: Simd, nodes: &[[u32; 4]; LANES], numbers: [&Lane; 2]) {
+        let first = self.first;
+        add_alike(simd, self.quad(N - 1), first, nodes, numbers);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::corners::NO_CORNERS;
     use super::*;
 
     /// Cells along a line, each with the next four nodes: every inner node is given each number four times.
@@ -253,17 +256,25 @@ mod tests {
         let items = (0..tiles, portions.shares::<2>());
         cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<2>)| {
             let mut share = shares.begin();
-            for nodes in &cells[tiles.start * LANES..tiles.end * LANES] {
-                share.give(nodes, |i| [1.0, f64::from(nodes[i])]);
+            for nodes in cells.as_chunks::<LANES>().0[tiles].iter() {
+                let one = Lane::of(1.0);
+                let numbers: [Lane; 4] = std::array::from_fn(|i| {
+                    Lane::from(std::array::from_fn(|l| f64::from(nodes[l][i])))
+                });
+                let mut vectors = NO_CORNERS;
+                (0..4).for_each(|i| vectors[3 * i] = one);
+                share.give(Simd::best(), nodes, &vectors, &numbers);
+                share.give_alike(Simd::best(), nodes, [&one, &one]);
             }
         });
         let nodes = cells.len() + 3;
         for first in (0..nodes).step_by(100) {
             let range = first..(first + 100).min(nodes);
-            let sums: [[f64; 2]; 100] = portions.sums(range.clone());
-            for (n, sum) in range.zip(sums) {
+            let [sums, alike]: [[Quad; 100]; 2] = portions.sums(range.clone());
+            for ((n, sum), alike) in range.zip(sums).zip(alike) {
                 let times = (n + 1).min(nodes - n).min(4) as f64;
-                assert_eq!(sum, [times, times * n as f64]);
+                assert_eq!(sum, Quad([times, 0.0, 0.0, times * n as f64]));
+                assert_eq!(alike, Quad([times, times, 0.0, 0.0]));
             }
         }
     }

@@ -19,11 +19,11 @@
 //! compression at 2θ = 1.94 (Kuhn tetrahedra of cubes, ν = 0, Courant number 0.5); we take 1.6.
 //! (Averaging lumped and consistent mass for phase accuracy: Goudreau and Taylor 1973.)
 
-use super::collect::{Portions, Share, Shares};
-use super::shapes::{Corners, NO_CORNERS, all_corners, load_nodes, set_corner};
+use super::collect::{Portions, Shares};
+use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes, set_corner};
 use super::{BLOCK, CellPairs, Node};
 use crate::Vec3;
-use crate::lanes::{LANES, for_each_simd};
+use crate::lanes::{LANES, Lane, for_each_simd, prefetch_record};
 use crate::parallel::fold;
 use crate::plan::MassMatrix;
 use crate::simulation::Simulation;
@@ -47,15 +47,7 @@ pub(super) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (
 
 for_each_simd! {
     /// Σ_j M_ij (w_i − w_j) of each node.
-    fn flow(
-        w: &mut Corners,
-        nodes: &[[u32; 4]; LANES],
-        given: &[Vec3],
-        pairs: &CellPairs,
-        sums: &mut Corners,
-        share: &mut Share<3>,
-    ) {
-        load_nodes(w, nodes, given);
+    fn flow(w: &Corners, pairs: &CellPairs, sums: &mut Corners) {
         for l in 0..LANES {
             let w = all_corners(w, l);
             let mut sum = [Vec3::ZERO; 4];
@@ -69,7 +61,6 @@ for_each_simd! {
                 set_corner(sums, l, i, sum[i]);
             }
         }
-        share.give_corners(nodes, sums);
     }
 }
 
@@ -87,43 +78,39 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
         ..
     } = sim;
     for (given, node) in shared.given.iter_mut().zip(&*nodes) {
-        *given = w(node);
+        *given = w(node).into();
     }
     let (active, given, pairs, simd) = (&*active, &shared.given[..], &cells.pairs[..], *simd);
     let cut = cells.portions.cut();
     let items = (0..pairs.len(), cells.portions.shares());
-    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<3>)| {
+    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<1>)| {
         let (mut w, mut sums, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
+        let nothing = [Lane::of(0.0); 4];
         for tile in tiles {
             let nodes = active.tile_nodes(tile);
-            flow(
-                simd,
-                &mut w,
-                nodes,
-                given,
-                &pairs[tile],
-                &mut sums,
-                &mut share,
-            );
+            prefetch_record(pairs, tile + 1);
+            load_nodes(simd, &mut w, nodes, given);
+            flow(simd, &w, &pairs[tile], &mut sums);
+            share.give(simd, nodes, &sums, &nothing);
         }
     });
     CORRECTION
 }
 
 /// Σ_j M_ij (w_i − w_j) at these nodes, after [`exchange`].
-pub(super) fn changes(theta: f64, nodes: Range<usize>, portions: &Portions) -> [[f64; 3]; BLOCK] {
+pub(super) fn changes(theta: f64, nodes: Range<usize>, portions: &Portions) -> [Quad; BLOCK] {
     match theta {
-        0.0 => [[0.0; 3]; BLOCK],
-        _ => portions.sums(nodes),
+        0.0 => [Quad::default(); BLOCK],
+        _ => portions.sums::<1, BLOCK>(nodes)[0],
     }
 }
 
 /// B w − w at a node, from its sum.
 #[inline]
-pub(super) fn change(theta: f64, mass: f64, sum: [f64; 3]) -> Vec3 {
+pub(super) fn change(theta: f64, mass: f64, sum: Quad) -> Vec3 {
     match mass {
         0.0 => Vec3::ZERO,
-        _ => Vec3::from_array(sum) * (theta / mass),
+        _ => sum.vector() * (theta / mass),
     }
 }
 
@@ -144,7 +131,7 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
     let gain = fold(items, BLOCK, &|(slots, nodes, given): (
         Range<usize>,
         &mut [Node],
-        &mut [Vec3],
+        &mut [Quad],
     )| {
         let mut gain = 0.0;
         let changes = changes(theta, slots.clone(), portions);
@@ -155,7 +142,7 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
                     Some(constraint) => constraint.free * change,
                     None => change,
                 };
-            *given = node.received;
+            *given = node.received.into();
             gain += h * node.mass * node.velocity.dot(node.received);
         }
         gain

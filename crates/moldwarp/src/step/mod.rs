@@ -27,6 +27,7 @@ mod active;
 mod advance;
 mod collect;
 mod contact;
+mod corners;
 mod correction;
 mod guard;
 mod guests;

@@ -1,20 +1,19 @@
 //! Stage 7: particles move with the nodes, x_p += Σ N_i Δu_i (Jassim et al. Eq. 9), and are looked for where they
 //! have come to (`points.rs` goes through them).
 
-use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, interpolate, load_nodes};
+use super::CellStrain;
+use super::shapes::Shapes;
+use crate::Mat3;
 use crate::Vec3;
 use crate::boundary::Outflow;
 use crate::contact::{Contacts, Fields};
-use crate::lanes::{
-    LANES, Lane, either, for_each_simd, get, load, load_one, set, store, sum, whole,
-};
+use crate::lanes::{Lane, either, for_each_simd, get, load, load_one, set, store, sum, whole};
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{First, Sum};
 use std::ops::Range;
 
 /// Cells and particles side by side.
 pub(super) struct Motion {
-    moved: Corners,
     pub position: [Lane; 3],
     pub mass: Lane,
     /// N_i where the particle has come to.
@@ -29,7 +28,6 @@ impl Default for Motion {
     fn default() -> Motion {
         let vector = [Lane::of(0.0); 3];
         Motion {
-            moved: NO_CORNERS,
             position: vector,
             mass: Lane::of(0.0),
             shapes: [Lane::of(0.0); 4],
@@ -49,6 +47,7 @@ for_each_simd! {
     pub(super) fn go_along(
         motion: &mut Motion,
         shapes: &Shapes,
+        strains: &CellStrain,
         gravity: Vec3,
         mass: &[f64],
         position: &mut [&mut [f64]; 3],
@@ -60,7 +59,9 @@ for_each_simd! {
         motion.mass[lanes..whole(lanes)].fill(0.0);
         for l in 0..whole(lanes) {
             let mut x = Vec3::from_array(get(&motion.position, l));
-            let step = interpolate(shapes.at(l, x), all_corners(&motion.moved, l));
+            // Σ N_i Δu_i is Δu of node 0 and, from there on, ∇Δu times the way.
+            let gradient = Mat3::from_cols_array(&get(&strains.gradient, l));
+            let step = Vec3::from_array(get(&strains.origin, l)) + gradient * shapes.arm(l, x);
             x += step;
             set(&mut motion.position, l, x.to_array());
             motion.work[l] += motion.mass[l] * gravity.dot(step);
@@ -92,12 +93,6 @@ for_each_simd! {
 }
 
 impl Motion {
-    /// Goes to the next cells.
-    #[inline]
-    pub fn enter(&mut self, nodes: &[[u32; 4]; LANES], moved: &[Vec3]) {
-        load_nodes(&mut self.moved, nodes, moved);
-    }
-
     /// Finds the elements of the particles of a slot that have left theirs. Those that have come to another one have
     /// no mass here any more, and `gone` is told their lanes.
     #[inline]

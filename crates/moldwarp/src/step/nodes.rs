@@ -1,6 +1,7 @@
 //! Stage 2: the equation of motion at the nodes, a_i = F_i / m_i (Jassim et al. Eq. 8), with
 //! local damping, absorbing boundaries, fixities, rollers and prescribed velocities.
 
+use super::corners::Quad;
 use super::{BLOCK, Node, contact, rigid};
 use crate::boundary::AbsorbingNode;
 use crate::measure::{DriftWork, Forces};
@@ -34,7 +35,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         Range<usize>,
         &mut [Node],
     )| {
-        let sums: [_; BLOCK] = portions.sums(slots.clone());
+        let [sums]: [[_; BLOCK]; 1] = portions.sums(slots.clone());
         for ((slot, node), sum) in slots.zip(nodes).zip(sums) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
@@ -99,8 +100,8 @@ fn book(sim: &mut Simulation, drifted: bool) {
 }
 
 /// −Σ S ∇N_i of a node, N, and the mass whose weight pulls at it where there is a reference stress, kg.
-fn pushed([x, y, z, weighed]: [f64; 4]) -> (Vec3, f64) {
-    (Vec3::new(x, y, z), weighed)
+fn pushed(sum: Quad) -> (Vec3, f64) {
+    (sum.vector(), sum.0[3])
 }
 
 /// Forces that nodes would follow were nothing to hold them, N, by mesh node: for what is to begin
@@ -113,7 +114,7 @@ pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
         sim.slots(mesh_node)
             .map(|slot| {
                 let node = &sim.nodes[slot];
-                let [sum] = sim.cells.portions.sums(slot..slot + 1);
+                let [[sum]] = sim.cells.portions.sums(slot..slot + 1);
                 let (internal, weighed) = pushed(sum);
                 let weighed = sim.reference.as_ref().map_or(node.mass, |_| weighed);
                 internal + sim.gravity * weighed + node.load

@@ -10,7 +10,7 @@ use super::state::Summed;
 use super::stress::{Arrays as Stressed, Stresses};
 use super::sums::{Asked, Counted, Records, Sums};
 use super::{CellPairs, CellStress, CellSums};
-use crate::lanes::{ByTile, Lane, for_each_simd, load, whole};
+use crate::lanes::{ByTile, Lane, for_each_simd, load, prefetch, prefetch_record, whole};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
@@ -89,7 +89,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     let (shapes, strains) = (&cells.shapes[..], &cells.strains[..]);
     let cut = cells.portions.cut();
     let all = ByTile::new(&active.tiles, arrays, (records, cells.portions.shares()));
-    let work = |block: ByTile<Arrays, (Cells, Shares<6>)>| {
+    let work = |block: ByTile<Arrays, (Cells, Shares<2>)>| {
         let first = block.first();
         let tiles = block.each();
         let (mut stressed, mut position, elements) = block.particles;
@@ -100,10 +100,11 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let mut crossing = Crossing::default();
         let records = cell_sums.iter_mut().zip(pairs).zip(stresses);
         for ((number, tile), ((sum, pairs), cell_stress)) in tiles.zip(records) {
-            let (nodes, strains) = (active.tile_nodes(number), &strains[number]);
-            let shapes = &shapes[number];
+            let nodes = active.tile_nodes(number);
+            prefetch_record(strains, number + 1);
+            prefetch_record(shapes, number + 1);
+            let (strains, shapes) = (&strains[number], &shapes[number]);
             stress.enter(strains, nodes, shared);
-            motion.enter(nodes, &shared.moved);
             let mut records = Records {
                 sum,
                 pairs,
@@ -115,11 +116,19 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let bodies = &body[slot.clone()];
+                let next = slot.end - first;
+                prefetch(&stressed.0.each_ref().map(|s| &**s), next);
+                prefetch(&stressed.1.each_ref().map(|s| &**s), next);
+                prefetch(&[&*stressed.2], next);
+                prefetch(&position.each_ref().map(|x| &**x), next);
+                prefetch(&velocity, slot.end);
+                prefetch(&[mass], slot.end);
                 stress.update(strains, slot.clone(), bodies, &mut stressed, first);
                 go_along(
                     simd,
                     &mut motion,
                     shapes,
+                    strains,
                     gravity,
                     &mass[slot.start..],
                     &mut position,

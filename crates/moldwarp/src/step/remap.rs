@@ -5,9 +5,9 @@
 //! velocity that they have, as they do in stage 3 with accelerations, so that a roller on a plane of
 //! symmetry is a mirror.
 
+use super::corners::Quad;
 use super::state::moved;
 use super::{BLOCK, Node, contact, correction};
-use crate::Vec3;
 use crate::measure::DriftWork;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
@@ -97,12 +97,12 @@ fn move_nodes(sim: &mut Simulation, dt: f64) {
     let items = (&mut nodes[..], &mut shared.moved[..]);
     let work = fold(items, BLOCK, &|(nodes, moved): (
         &mut [Node],
-        &mut [Vec3],
+        &mut [Quad],
     )| {
         let mut work = DriftWork::default();
         for (node, moved) in nodes.iter_mut().zip(moved) {
             node.moved = node.grid_velocity * dt;
-            *moved = node.moved;
+            *moved = node.moved.into();
             work.add(node, gravity);
         }
         work

@@ -1,13 +1,8 @@
-//! Shape functions and nodal values of cells side by side.
+//! Shape functions of cells side by side.
 
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, get, set};
+use crate::lanes::{Lane, get, set};
 use crate::mesh::{Mesh, NONE, barycentric, shortest_altitude};
-
-/// Vectors at the four nodes of cells side by side.
-pub type Corners = [Lane; 12];
-
-pub(super) const NO_CORNERS: Corners = [Lane::of(0.0); 12];
 
 /// What the shape functions of elements are made of. All zero where there is no element.
 #[derive(Clone, Debug)]
@@ -67,6 +62,12 @@ impl Shapes {
         ]
     }
 
+    /// A point from node 0 on, m.
+    #[inline(always)]
+    pub fn arm(&self, l: usize, x: Vec3) -> Vec3 {
+        x - Vec3::from_array(get(&self.origin, l))
+    }
+
     /// N_i at a point.
     #[inline(always)]
     pub fn at(&self, l: usize, x: Vec3) -> [f64; 4] {
@@ -76,54 +77,4 @@ impl Shapes {
             x,
         )
     }
-}
-
-/// Copies vectors of the nodes of cells side by side.
-#[inline(always)]
-pub(super) fn load_nodes(corners: &mut Corners, cells: &[[u32; 4]; LANES], vectors: &[Vec3]) {
-    for (l, cell) in cells.iter().enumerate() {
-        for (i, &n) in cell.iter().enumerate() {
-            set_corner(corners, l, i, vectors[n as usize]);
-        }
-    }
-}
-
-/// Sums of a number of the nodes of cells side by side.
-#[inline(always)]
-pub(super) fn sum_nodes(sums: &mut Lane, cells: &[[u32; 4]; LANES], numbers: &[f64]) {
-    for (sum, cell) in sums.iter_mut().zip(cells) {
-        *sum = cell.iter().map(|&n| numbers[n as usize]).sum();
-    }
-}
-
-#[inline(always)]
-pub(super) fn corner(corners: &Corners, l: usize, i: usize) -> Vec3 {
-    Vec3::new(
-        corners[3 * i][l],
-        corners[3 * i + 1][l],
-        corners[3 * i + 2][l],
-    )
-}
-
-#[inline(always)]
-pub(super) fn all_corners(corners: &Corners, l: usize) -> [Vec3; 4] {
-    [
-        corner(corners, l, 0),
-        corner(corners, l, 1),
-        corner(corners, l, 2),
-        corner(corners, l, 3),
-    ]
-}
-
-#[inline(always)]
-pub(super) fn set_corner(corners: &mut Corners, l: usize, i: usize, value: Vec3) {
-    corners[3 * i][l] = value.x;
-    corners[3 * i + 1][l] = value.y;
-    corners[3 * i + 2][l] = value.z;
-}
-
-/// Σ N_i w_i.
-#[inline(always)]
-pub(super) fn interpolate(n: [f64; 4], w: [Vec3; 4]) -> Vec3 {
-    w[0] * n[0] + w[1] * n[1] + w[2] * n[2] + w[3] * n[3]
 }

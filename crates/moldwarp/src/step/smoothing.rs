@@ -23,8 +23,7 @@
 //! `collapse-smoothing`). It is offered for comparison and is not the default.
 
 use super::collect::{Portions, Shares};
-use super::shapes::{NO_CORNERS, sum_nodes};
-use super::shapes::{all_corners, load_nodes};
+use super::corners::{NO_CORNERS, Quad, all_corners, load_nodes, sum_nodes};
 use super::{BLOCK, CellForce, Cells, strain, to_nodes};
 use crate::lanes::{LANES, Lane, either, get};
 use crate::parallel::fold;
@@ -62,8 +61,8 @@ fn means_at_nodes(portions: &Portions, means: &mut [f64], factor: f64) {
         Range<usize>,
         &mut [f64],
     )| {
-        let sums: [_; BLOCK] = portions.sums(slots);
-        for (mean, [sum, all]) in means.iter_mut().zip(sums) {
+        let [sums]: [[_; BLOCK]; 1] = portions.sums(slots);
+        for (mean, Quad([sum, all, ..])) in means.iter_mut().zip(sums) {
             let whole = factor * all;
             *mean = if all > 0.0 { sum / whole } else { 0.0 };
         }
@@ -100,15 +99,16 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     };
     let (cut, known) = (portions.cut(), &forces[..]);
     let items = (0..known.len(), portions.shares());
-    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<2>)| {
+    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<1>)| {
+        let (mut traces, mut weights) = (Lane::of(0.0), Lane::of(0.0));
         let mut share = shares.begin();
         for tile in tiles {
-            let (nodes, force) = (active.tile_nodes(tile), &known[tile]);
+            let force = &known[tile];
             for l in 0..LANES {
-                let value = tensor::trace(&get(&force.stress, l));
-                let weight = weight(tile, l, force);
-                share.give(&nodes[l], |_| [value, weight]);
+                traces[l] = tensor::trace(&get(&force.stress, l));
+                weights[l] = weight(tile, l, force);
             }
+            share.give_alike(simd, active.tile_nodes(tile), [&traces, &weights]);
         }
     });
     // q_n: a trace is three times the mean, and a quarter goes to each node.
@@ -118,14 +118,14 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     let work = cut.fold(items, &|(tiles, forces, shares): (
         Range<usize>,
         &mut [CellForce],
-        Shares<4>,
+        Shares<1>,
     )| {
         let (mut work, mut moved, mut pushed) = (0.0, NO_CORNERS, NO_CORNERS);
         let (mut means, mut share) = (Lane::of(0.0), shares.begin());
         for (tile, force) in tiles.zip(forces) {
             let nodes = active.tile_nodes(tile);
             sum_nodes(&mut means, nodes, &shared.mean_stress);
-            load_nodes(&mut moved, nodes, &shared.moved);
+            load_nodes(simd, &mut moved, nodes, &shared.moved);
             for l in (0..LANES).filter(|&l| active.is_cell[tile * LANES + l]) {
                 let own = tensor::trace(&get(&force.stress, l)) / 3.0;
                 let added = means[l] * weight(tile, l, force) - own;

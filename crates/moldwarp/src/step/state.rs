@@ -1,6 +1,7 @@
 //! What the step keeps per node and per cell.
 
 use super::collect::Portions;
+use super::corners::Quad;
 use super::shapes::Shapes;
 use super::{Active, TILES};
 use crate::Vec3;
@@ -51,11 +52,11 @@ pub struct Shared {
     /// A quarter of the averaged mean stress of the attached cells, Pa.
     pub mean_stress: Vec<f64>,
     /// Δu_i of the last drift, m.
-    pub moved: Vec<Vec3>,
+    pub moved: Vec<Quad>,
     /// What is exchanged between nodes and particles: accelerations or velocities.
-    pub given: Vec<Vec3>,
+    pub given: Vec<Quad>,
     /// Velocities that particles are drawn to by relaxation, m/s.
-    pub grid: Vec<Vec3>,
+    pub grid: Vec<Quad>,
 }
 
 impl Shared {
@@ -70,10 +71,11 @@ impl Shared {
             numbers.resize(nodes.len(), 0.0);
         }
         for vectors in [&mut self.given, &mut self.grid] {
-            vectors.resize(nodes.len(), Vec3::ZERO);
+            vectors.resize(nodes.len(), Quad::default());
         }
         self.moved.clear();
-        self.moved.extend(nodes.iter().map(|node| node.moved));
+        self.moved
+            .extend(nodes.iter().map(|node| Quad::from(node.moved)));
     }
 }
 
@@ -126,11 +128,11 @@ pub struct CellForce {
 /// Deformation of each cell in a step.
 #[derive(Clone, Debug)]
 pub struct CellStrain {
-    /// With ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step, the same in its middle,
-    /// ∇Δu (I + ½∇Δu)⁻¹, by columns: a rigid rotation has none of it but
-    /// spin, and its trace is the logarithmic volume strain to third order.
-    pub midpoint: [Lane; 9],
-    /// Trace of `midpoint`.
+    /// ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step, by columns.
+    pub gradient: [Lane; 9],
+    /// Δu of node 0, m.
+    pub origin: [Lane; 3],
+    /// Trace of the gradient in the middle of the step (`strain::midpoint`).
     pub volumetric: Lane,
 }
 
@@ -216,7 +218,8 @@ impl Default for CellForce {
 impl Default for CellStrain {
     fn default() -> CellStrain {
         CellStrain {
-            midpoint: [ZERO; 9],
+            gradient: [ZERO; 9],
+            origin: [ZERO; 3],
             volumetric: ZERO,
         }
     }

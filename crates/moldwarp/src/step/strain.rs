@@ -1,7 +1,8 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
-use super::collect::{Share, Shares};
-use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, load_nodes};
+use super::collect::Shares;
+use super::corners::{Corners, NO_CORNERS, all_corners, load_nodes};
+use super::shapes::Shapes;
 use super::{CellForce, CellStrain, CellStress, CellSums, Cells, smoothing};
 use crate::lanes::{self, LANES, Lane, for_each_simd, get, set};
 use crate::simulation::Simulation;
@@ -24,9 +25,10 @@ pub(super) fn gradient(g: &[Vec3; 3], u: [Vec3; 4]) -> Mat3 {
     )
 }
 
-/// ∇Δu (I + ½∇Δu)⁻¹.
+/// ∇Δu (I + ½∇Δu)⁻¹, the gradient in the configuration in the middle of the step: a rigid rotation has none of it but
+/// spin, and its trace is the logarithmic volume strain to third order.
 #[inline(always)]
-fn midpoint(gradient: &Mat3) -> Mat3 {
+pub(super) fn midpoint(gradient: &Mat3) -> Mat3 {
     let middle = Mat3::IDENTITY + *gradient * 0.5;
     let (x, y, z) = (middle.x_axis, middle.y_axis, middle.z_axis);
     let (a, b, c) = (y.cross(z), z.cross(x), x.cross(y));
@@ -71,10 +73,12 @@ for_each_simd! {
     ) {
         let Worked { shapes, sum, stress, force } = tile;
         for l in 0..LANES {
-            let gradient = gradient(&shapes.gradients(l), all_corners(moved, l));
+            let corners = all_corners(moved, l);
+            let gradient = gradient(&shapes.gradients(l), corners);
             let midpoint = midpoint(&gradient);
             let volumetric = midpoint.x_axis.x + midpoint.y_axis.y + midpoint.z_axis.z;
-            set(&mut strains.midpoint, l, midpoint.to_cols_array());
+            set(&mut strains.gradient, l, gradient.to_cols_array());
+            set(&mut strains.origin, l, corners[0].to_array());
             strains.volumetric[l] = volumetric;
             let (volume, whole) = (sum.volume[l], shapes.volume[l]);
             let weight = smoothing::weight(force.filled[l], volume, stress.closed[l], whole);
@@ -83,16 +87,6 @@ for_each_simd! {
             for k in 0..4 {
                 works[k][l] += work[k];
             }
-        }
-    }
-}
-
-for_each_simd! {
-    /// Gives nodes what is smoothed times w_e, and w_e.
-    fn give(weights: &[Lane; 2], nodes: &[[u32; 4]; LANES], share: &mut Share<2>) {
-        for l in 0..LANES {
-            let weights = get(weights, l);
-            share.give(&nodes[l], |_| weights);
         }
     }
 }
@@ -123,13 +117,13 @@ fn gradients(sim: &mut Simulation) {
     let work = cut.fold(items, &|(tiles, strains, shares): (
         Range<usize>,
         &mut [CellStrain],
-        Shares<2>,
+        Shares<1>,
     )| {
         let (mut moved, mut share) = (NO_CORNERS, shares.begin());
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 4]);
         for (tile, strains) in tiles.zip(strains) {
             let nodes = active.tile_nodes(tile);
-            load_nodes(&mut moved, nodes, &shared.moved);
+            load_nodes(simd, &mut moved, nodes, &shared.moved);
             let tile = Worked {
                 shapes: &shapes[tile],
                 sum: &sums[tile],
@@ -137,7 +131,7 @@ fn gradients(sim: &mut Simulation) {
                 force: &forces[tile],
             };
             deform(simd, &tile, &moved, strains, &mut weights, &mut works);
-            give(simd, &weights, nodes, &mut share);
+            share.give_alike(simd, nodes, weights.each_ref());
         }
         works.each_ref().map(lanes::sum)
     });

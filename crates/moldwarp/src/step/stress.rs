@@ -5,6 +5,7 @@ mod external;
 pub(crate) use external::Answers;
 pub(super) use external::ask;
 
+use super::strain::midpoint;
 use super::{CellStrain, Shared, smoothing};
 use crate::Mat3;
 use crate::lanes::{
@@ -218,7 +219,7 @@ for_each_simd! {
     /// Strain and rotation of cells.
     fn deform(own: &CellStrain, side: &mut Side) {
         for l in 0..LANES {
-            let midpoint = Mat3::from_cols_array(&get(&own.midpoint, l));
+            let midpoint = midpoint(&Mat3::from_cols_array(&get(&own.gradient, l)));
             let mut strain = tensor::strain(&midpoint);
             let change = (side.smoothed[l] - own.volumetric[l]) / 3.0;
             (0..3).for_each(|k| strain[k] += change);

@@ -4,8 +4,9 @@
 //! not know, or all of it, is made up for here.
 
 use super::collect::{Share, Shares};
+use super::corners::{Corners, NO_CORNERS, corner, set_corner};
 use super::correction::PAIRS;
-use super::shapes::{Corners, NO_CORNERS, Shapes, corner, set_corner};
+use super::shapes::Shapes;
 use super::state::Summed;
 use super::{CellPairs, CellStress, CellSums, Reference};
 use crate::Vec3;
@@ -16,10 +17,6 @@ use crate::material::STATE_SIZE;
 use crate::particles::Particles;
 use crate::plan::Plan;
 use crate::simulation::Simulation;
-
-/// What nodes are given: Σ m_p v_p N_i, Σ m_p N_i, and of the whole cell Σ V_p without what has opened and
-/// Σ m_p.
-pub(super) type Given = [f64; 6];
 
 /// What the sums of cells side by side are made of, beside what their records have.
 pub(super) struct Sums {
@@ -95,20 +92,6 @@ for_each_simd! {
     }
 }
 
-for_each_simd! {
-    /// Gives nodes what they collect.
-    fn give(sums: &Sums, sum: &CellSums, nodes: &[[u32; 4]; LANES], share: &mut Share<6>) {
-        for l in 0..LANES {
-            let (mass, solid) = (get(&sum.mass, l), sum.solid[l]);
-            let all = mass[0] + mass[1] + mass[2] + mass[3];
-            share.give(&nodes[l], |i| {
-                let [x, y, z] = corner(&sums.momentum, l, i).to_array();
-                [x, y, z, mass[i], solid, all]
-            });
-        }
-    }
-}
-
 /// What is asked of all particles.
 #[derive(Clone, Copy)]
 pub(super) struct Asked<'a> {
@@ -142,7 +125,8 @@ impl Sums {
         }
     }
 
-    /// Puts together what lanes of the same cell have, and gives nodes what they collect.
+    /// Puts together what lanes of the same cell have, and gives nodes Σ m_p v_p N_i, Σ m_p N_i, and of the whole cell
+    /// Σ V_p without what has opened and Σ m_p.
     #[inline]
     pub fn leave(
         &mut self,
@@ -150,7 +134,7 @@ impl Sums {
         tile: Contents,
         records: &mut Records,
         nodes: &[[u32; 4]; LANES],
-        share: &mut Share<6>,
+        share: &mut Share<2>,
     ) {
         let Records { sum, pairs, stress } = records;
         if !tile.helpers.is_empty() {
@@ -165,7 +149,14 @@ impl Sums {
                 moduli[to] = moduli[to].max(moduli[from]);
             }
         }
-        give(simd, self, sum, nodes, share);
+        share.give(simd, nodes, &self.momentum, &sum.mass);
+        let mut all = sum.mass[0];
+        for mass in &sum.mass[1..] {
+            all.iter_mut()
+                .zip(mass.iter())
+                .for_each(|(all, m)| *all += m);
+        }
+        share.give_alike(simd, nodes, [&sum.solid, &all]);
     }
 
     /// What materials say of the particles of a slot.
@@ -283,7 +274,7 @@ pub(super) fn run(sim: &mut Simulation) {
     );
     let cut = cells.portions.cut();
     let shares = cells.portions.shares();
-    type All<'a> = (Arrays<'a>, Shares<'a, 6>, &'a [Shapes]);
+    type All<'a> = (Arrays<'a>, Shares<'a, 2>, &'a [Shapes]);
     let all = ByTile::new(&active.tiles, (), (arrays, shares, &cells.shapes[..]));
     let work = |block: ByTile<(), All>| {
         let tiles = block.each();

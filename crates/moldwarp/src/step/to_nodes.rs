@@ -1,10 +1,9 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
 use super::collect::{Share, Shares};
-use super::shapes::{Corners, NO_CORNERS, Shapes, all_corners, corner, load_nodes, set_corner};
-use super::{
-    Active, BLOCK, CellForce, CellStress, CellSums, Cells, Node, shapes, smoothing, strain, sums,
-};
+use super::corners::{self, Corners, NO_CORNERS, Quad, all_corners, load_nodes, set_corner};
+use super::shapes::Shapes;
+use super::{Active, BLOCK, CellForce, CellStress, CellSums, Cells, Node, smoothing, strain, sums};
 use crate::lanes::{self, LANES, Lane, Simd, either, for_each_simd, get, lane_of, set};
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
@@ -51,10 +50,11 @@ fn sum_nodes(sim: &mut Simulation) {
         &mut [Node],
         Numbers,
     )| {
-        let sums: [sums::Given; BLOCK] = portions.sums(slots.clone());
+        let [sums, alike]: [[_; BLOCK]; 2] = portions.sums(slots.clone());
         let numbers = fillings.iter_mut().zip(densities);
-        for (((slot, node), sum), (filling, density)) in slots.zip(nodes).zip(sums).zip(numbers) {
-            let [x, y, z, mass, volume, all_mass] = sum;
+        let sums = sums.into_iter().zip(alike);
+        for (((slot, node), sums), (filling, density)) in slots.zip(nodes).zip(sums).zip(numbers) {
+            let (Quad([x, y, z, mass]), Quad([volume, all_mass, ..])) = sums;
             let momentum = Vec3::new(x, y, z);
             let grid = active.keys[slot] % grid_nodes;
             let mut whole = walls.volume(mesh, grid);
@@ -125,7 +125,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     let work = cut.fold(items, &|(range, forces, shares): (
         Range<usize>,
         &mut [CellForce],
-        Shares<4>,
+        Shares<1>,
     )| {
         let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
         let mut work: [Lane; 3] = [Lane::of(0.0); 3];
@@ -136,7 +136,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 let filled = filled && is_filled(&nodes[l], &shared.filling);
                 force.filled[l] = f64::from(u8::from(filled));
             }
-            shapes::sum_nodes(&mut force.density, nodes, &shared.density);
+            corners::sum_nodes(&mut force.density, nodes, &shared.density);
             let (shapes, sum, stress) = (&shapes[tile], &sums[tile], &stresses[tile]);
             stand_in(simd, shapes, sum, stress, force);
             for l in 0..LANES {
@@ -157,7 +157,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 set(&mut force.stress, l, mean.map(|s| s * mesh.volumes[e]));
             }
             if before > 0.0 {
-                load_nodes(&mut moved, nodes, &shared.moved);
+                load_nodes(simd, &mut moved, nodes, &shared.moved);
                 resist(simd, shapes, sum, stress, force, &moved, per_step);
                 half_work(simd, shapes, stress, force, &moved, &mut work);
             }
@@ -242,26 +242,25 @@ for_each_simd! {
     }
 }
 
+/// Gives nodes f_i = −S ∇N_i and the mass whose weight pulls at them.
+pub(super) fn push(
+    simd: Simd,
+    shapes: &Shapes,
+    force: &CellForce,
+    nodes: &[[u32; 4]; LANES],
+    pushed: &mut Corners,
+    share: &mut Share<1>,
+) {
+    find_forces(simd, shapes, force, pushed);
+    share.give(simd, nodes, pushed, &force.weighed);
+}
+
 for_each_simd! {
-    /// Gives nodes f_i = −S ∇N_i and the mass whose weight pulls at them.
-    pub(super) fn push(
-        shapes: &Shapes,
-        force: &CellForce,
-        nodes: &[[u32; 4]; LANES],
-        pushed: &mut Corners,
-        share: &mut Share<4>,
-    ) {
+    fn find_forces(shapes: &Shapes, force: &CellForce, pushed: &mut Corners) {
         for l in 0..LANES {
             for (i, f) in nodal(l, shapes, force).into_iter().enumerate() {
                 set_corner(pushed, l, i, f);
             }
-        }
-        for l in 0..LANES {
-            let weighed = get(&force.weighed, l);
-            share.give(&nodes[l], |i| {
-                let [x, y, z] = corner(pushed, l, i).to_array();
-                [x, y, z, weighed[i]]
-            });
         }
     }
 }

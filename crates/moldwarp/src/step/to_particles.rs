@@ -1,14 +1,15 @@
 //! Stage 3: velocities of particles, v_p += h Σ N_i a_i (Jassim et al. Eq. 8), and the momenta
 //! of the updated particles for the remap.
 
-use super::collect::{Portions, Share, Shares};
-use super::shapes::{
-    Corners, NO_CORNERS, Shapes, all_corners, corner, interpolate, load_nodes, set_corner,
+use super::collect::{Portions, Shares};
+use super::corners::{
+    Corners, NO_CORNERS, all_corners, corner, interpolate, load_nodes, set_corner,
 };
+use super::shapes::Shapes;
 use super::{BLOCK, Node};
 use crate::Vec3;
 use crate::lanes::{
-    ByTile, LANES, Lane, for_each_simd, get, load, load_one, set, store, sum as sum_lanes, whole,
+    ByTile, Lane, for_each_simd, get, load, load_one, prefetch, set, store, sum as sum_lanes, whole,
 };
 use crate::parallel::fold;
 use crate::simulation::Simulation;
@@ -61,7 +62,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let blend = -libm::expm1(-plan.numerics.pic_rate * h);
     if blend > 0.0 {
         for (grid, node) in shared.grid.iter_mut().zip(&*nodes) {
-            *grid = node.velocity + node.received * h;
+            *grid = (node.velocity + node.received * h).into();
         }
     }
     let (active, shared, simd) = (&*active, &*shared, *simd);
@@ -71,17 +72,18 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let cut = cells.portions.cut();
     let records = (cells.portions.shares(), &cells.shapes[..]);
     let all = ByTile::new(&active.tiles, velocities, records);
-    type Records<'a> = (Shares<'a, 3>, &'a [Shapes]);
+    type Records<'a> = (Shares<'a, 1>, &'a [Shapes]);
     let sums = cut.fold(all, &|block: ByTile<Velocities, Records>| {
         let first = block.first();
         let tiles = block.each();
         let (mut velocity, (shares, shapes)) = (block.particles, block.cells);
         let (mut kick, mut share) = (Kick::default(), shares.begin());
+        let nothing = [Lane::of(0.0); 4];
         for ((number, tile), shapes) in tiles.zip(shapes) {
             let nodes = active.tile_nodes(number);
-            load_nodes(&mut kick.received, nodes, &shared.given);
+            load_nodes(simd, &mut kick.received, nodes, &shared.given);
             if blend > 0.0 {
-                load_nodes(&mut kick.grid, nodes, &shared.grid);
+                load_nodes(simd, &mut kick.grid, nodes, &shared.grid);
             }
             kick.momentum = NO_CORNERS;
             for slot in tile.slots() {
@@ -92,10 +94,13 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
                     first,
                 };
                 let (own, lanes) = (&mut velocity, slot.len());
+                prefetch(&position, slot.end);
+                prefetch(&[mass], slot.end);
+                prefetch(&own.each_ref().map(|v| &**v), slot.end - first);
                 accelerate(simd, &mut kick, &points, shapes, own, h, blend, lanes);
             }
             tile.gather(&mut kick.momentum);
-            give(simd, &kick.momentum, nodes, &mut share);
+            share.give(simd, nodes, &kick.momentum, &nothing);
         }
         kick.energy.each_ref().map(sum_lanes)
     });
@@ -110,22 +115,15 @@ fn average(nodes: &mut [Node], portions: &Portions) {
         Range<usize>,
         &mut [Node],
     )| {
-        let momenta: [_; BLOCK] = portions.sums(slots);
+        let [momenta]: [[_; BLOCK]; 1] = portions.sums(slots);
         for (node, momentum) in nodes.iter_mut().zip(momenta) {
             node.average = if node.mass > 0.0 {
-                Vec3::from_array(momentum) / node.mass
+                momentum.vector() / node.mass
             } else {
                 Vec3::ZERO
             };
         }
     });
-}
-
-for_each_simd! {
-    /// Gives nodes their momenta.
-    fn give(momentum: &Corners, nodes: &[[u32; 4]; LANES], share: &mut Share<3>) {
-        share.give_corners(nodes, momentum);
-    }
 }
 
 /// The particles of a slot.

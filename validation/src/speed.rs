@@ -165,9 +165,10 @@ fn run(bench: &Bench) -> Result<(), Failure> {
         if sim.finished() {
             return Err(format!("{} is over after {} steps", bench.name, sim.steps()).into());
         }
-        done += sim.particles().len();
-        sim.step()?;
+        done += sim.particle_count();
+        sim.step_and(|_| ())?;
     }
+    sim.settle();
     let rate = done as f64 / start.elapsed().as_secs_f64();
     let peak = moldwarp_io::check::peak_memory().map(|bytes| bytes as f64);
     let mut filled = sim.particles().element.clone();

@@ -46,6 +46,7 @@ impl Simulation {
         self.gave_velocities();
         self.clock.longest = 0.0;
         self.clock.next = self.kick(0.0, self.remaining())?;
+        self.settle();
         Ok(())
     }
 

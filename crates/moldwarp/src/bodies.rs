@@ -185,8 +185,10 @@ impl Simulation {
             loads,
             probes,
             present,
+            kinetic,
             ..
         } = self;
+        *kinetic = None;
         let gone = || (0..particles.len()).filter(|&p| !keep[p]);
         let square = |p: usize| particles.velocity.at(p).length_squared();
         ledger.remove(gone().map(|p| 0.5 * particles.mass[p] * square(p)).sum());

@@ -76,8 +76,17 @@ impl Simulation {
         &self.plan.mesh
     }
 
+    /// # Panics
+    ///
+    /// If they are still to receive a kick: see [`settle`](Simulation::settle).
     pub fn particles(&self) -> &Particles {
+        assert!(self.pending.is_none(), "particles are settled");
         &self.particles
+    }
+
+    /// Number of particles.
+    pub fn particle_count(&self) -> usize {
+        self.particles.len()
     }
 
     /// Number of elements that take part in the step.

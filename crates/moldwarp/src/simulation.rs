@@ -14,7 +14,9 @@ use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
-use crate::step::{Active, Answers, Cells, Grid, Guests, Node, Reference, Shared, TimeStepError};
+use crate::step::{
+    Active, Answers, Cells, Grid, Guests, Node, Pending, Reference, Shared, TimeStepError,
+};
 use crate::stop::{SetupError, Stop};
 use crate::switches::Switches;
 
@@ -74,6 +76,10 @@ pub struct Simulation {
     pub(crate) switches: Switches,
     pub(crate) watch: Watch,
     pub(crate) scale: Scale,
+    /// What particles have not received yet.
+    pub(crate) pending: Option<Pending>,
+    /// Σ ½ m v² of the particles at the end of the last drift, J, if it is known.
+    pub(crate) kinetic: Option<f64>,
     /// What external laws have said in this step.
     pub(crate) answers: Answers,
     pub(crate) simd: Simd,
@@ -136,6 +142,8 @@ impl Simulation {
             clock: Clock::default(),
             watch: Watch::default(),
             scale: Scale::default(),
+            pending: None,
+            kinetic: None,
             answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),
@@ -172,6 +180,7 @@ impl Simulation {
         })?;
         // They are among the particles now.
         simulation.plan.inherited = Particles::default();
+        simulation.settle();
         Ok(simulation)
     }
 
@@ -198,15 +207,19 @@ impl Simulation {
         self.ledger = Ledger::default();
         self.gave_velocities();
         self.clock.next = self.kick(0.0, self.remaining())?;
+        self.settle();
         Ok(())
     }
 
     /// One time step, and what has to be done if it is the last of a stage.
     pub fn step(&mut self) -> Result<(), Stop> {
-        self.step_and(|_| ())
+        let stepped = self.step_and(|_| ());
+        self.settle();
+        stepped
     }
 
-    /// The same; `ended` sees the end of a stage before the next one changes anything.
+    /// The same, but that particles' velocities wait for [`settle`](Simulation::settle): they receive them in passing in
+    /// the next step. `ended` sees the end of a stage, settled, before the next one changes anything.
     pub fn step_and(&mut self, ended: impl FnOnce(&Simulation)) -> Result<(), Stop> {
         if self.finished() {
             return Ok(());
@@ -228,6 +241,7 @@ impl Simulation {
         if !at_rest {
             self.has_to_be_at_rest()?;
         }
+        self.settle();
         self.profile.lap(Part::Between);
         ended(self);
         self.profile.lap(Part::Output);

@@ -101,13 +101,20 @@ impl Recorder {
     }
 
     /// Writes what is due now.
-    pub fn record(&mut self, sim: &Simulation) -> Result<(), FileError> {
+    pub fn record(&mut self, sim: &mut Simulation) -> Result<(), FileError> {
         let due =
             |schedule: &mut Option<Schedule>| schedule.as_mut().is_some_and(|s| s.due(sim.time()));
-        if due(&mut self.frame_schedule) {
+        let (frame, row) = (
+            due(&mut self.frame_schedule),
+            due(&mut self.history_schedule),
+        );
+        if frame || row {
+            sim.settle();
+        }
+        if frame {
             self.frame(sim)?;
         }
-        if due(&mut self.history_schedule) {
+        if row {
             self.row(sim)?;
         }
         Ok(())

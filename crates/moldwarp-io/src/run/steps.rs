@@ -67,7 +67,8 @@ pub(super) struct Books {
 }
 
 impl Books {
-    fn checkpoint(&mut self, sim: &Simulation) -> Result<(), FileError> {
+    fn checkpoint(&mut self, sim: &mut Simulation) -> Result<(), FileError> {
+        sim.settle();
         self.checkpoints
             .write(sim, &self.course, &mut self.recorder)
     }
@@ -105,7 +106,7 @@ pub(super) fn steps(
             books.checkpoint(sim)?;
             return Ok(Ended::Interrupted(signal));
         }
-        let (begun, particles, stage) = (Instant::now(), sim.particles().len(), sim.stage());
+        let (begun, particles, stage) = (Instant::now(), sim.particle_count(), sim.stage());
         let (time, dt) = (sim.time(), sim.next_time_step());
         let (mut stage_file, mut writing) = (Ok(()), Duration::ZERO);
         let folder = books.recorder.folder();
@@ -117,6 +118,7 @@ pub(super) fn steps(
         let now = Instant::now();
         stage_file?;
         if let Err(stop) = step {
+            sim.settle();
             match stop {
                 Stop::NotAtRest { .. } => books.recorder.record_last(sim)?,
                 _ => books.recorder.record_fault(sim, time, dt)?,
@@ -138,6 +140,7 @@ pub(super) fn steps(
             observer.progress(&progress(sim, &books.course.pace, earlier + (now - start)));
         }
     }
+    sim.settle();
     books.recorder.record_last(sim)?;
     Ok(Ended::Done)
 }

@@ -243,6 +243,12 @@ impl Ledger {
         self.particles -= kinetic;
     }
 
+    /// Kinetic energy of the particles with their mid-step velocities, J.
+    #[cfg(test)]
+    pub(crate) fn particles(&self) -> f64 {
+        self.particles
+    }
+
     /// Half a drift's work of cells: [particles' stresses, mean minus particles', viscous].
     pub(crate) fn grid_stress_work(&mut self, [particles, difference, viscous]: [f64; 3]) {
         self.now.advection += particles;

@@ -73,7 +73,11 @@ impl Simulation {
             profile: _,
             spare_nodes: _,
             spare_numbers: _,
+            // Particles have received all, and the next drift adds up their energy.
+            pending,
+            kinetic: _,
         } = self;
+        assert!(pending.is_none(), "particles are settled");
         let materials: Vec<usize> = plan.bodies.iter().map(|b| b.material).collect();
         let (homes, filed): (Vec<u32>, Vec<u32>) = guests.filed(&order.filed).unzip();
         section("clock", Section::new(clock))?;
@@ -162,6 +166,8 @@ impl Simulation {
             switches: from.load("switches")?,
             watch: from.load("watch")?,
             scale: from.load("scale")?,
+            pending: None,
+            kinetic: None,
             answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),

@@ -66,12 +66,6 @@ pub(super) fn set_corner(corners: &mut Corners, l: usize, i: usize, value: Vec3)
     corners[3 * i + 2][l] = value.z;
 }
 
-/// Σ N_i w_i.
-#[inline(always)]
-pub(super) fn interpolate(n: [f64; 4], w: [Vec3; 4]) -> Vec3 {
-    w[0] * n[0] + w[1] * n[1] + w[2] * n[2] + w[3] * n[3]
-}
-
 /// Sums of a number of the nodes of cells side by side.
 #[inline(always)]
 pub(super) fn sum_nodes(sums: &mut Lane, cells: &[[u32; 4]; LANES], numbers: &[f64]) {

@@ -43,7 +43,18 @@ pub(super) fn stiffening(mass: MassMatrix) -> f64 {
 }
 
 /// The pairs of a cell's nodes, in the order of [`CellPairs`](super::CellPairs).
-pub(super) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+pub(super) const PAIRS: [(usize, usize); 10] = [
+    (0, 1),
+    (0, 2),
+    (0, 3),
+    (1, 2),
+    (1, 3),
+    (2, 3),
+    (0, 0),
+    (1, 1),
+    (2, 2),
+    (3, 3),
+];
 
 for_each_simd! {
     /// Σ_j M_ij (w_i − w_j) of each node.
@@ -64,11 +75,42 @@ for_each_simd! {
     }
 }
 
-/// Collects Σ_j M_ij (w_i − w_j), w being accelerations (N) or averages (kg m/s), for [`changes`]. Returns θ.
-pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -> f64 {
-    if sim.plan.numerics.mass == MassMatrix::Lumped {
-        return 0.0;
+for_each_simd! {
+    /// Σ_j M_ij w_j of each node.
+    fn product(w: &Corners, pairs: &CellPairs, sums: &mut Corners) {
+        for l in 0..LANES {
+            let w = all_corners(w, l);
+            let mut sum = [Vec3::ZERO; 4];
+            for i in 0..4 {
+                sum[i] = w[i] * pairs[6 + i][l];
+            }
+            for k in 0..6 {
+                let (i, j) = PAIRS[k];
+                sum[i] += w[j] * pairs[k][l];
+                sum[j] += w[i] * pairs[k][l];
+            }
+            for i in 0..4 {
+                set_corner(sums, l, i, sum[i]);
+            }
+        }
     }
+}
+
+/// What nodes exchange through the matrix M of their cells.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Through {
+    /// Σ_j M_ij (w_i − w_j).
+    Differences,
+    /// Σ_j M_ij w_j.
+    All,
+}
+
+/// Collects Σ_j M_ij w_j, w being accelerations (N) or velocities (kg m/s).
+pub(super) fn multiply(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) {
+    exchange(sim, w, Through::All);
+}
+
+fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync, through: Through) {
     let Simulation {
         active,
         nodes,
@@ -77,9 +119,12 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
         simd,
         ..
     } = sim;
-    for (given, node) in shared.given.iter_mut().zip(&*nodes) {
-        *given = w(node).into();
-    }
+    let items = (&nodes[..], &mut shared.given[..]);
+    fold(items, BLOCK, &|(nodes, given): (&[Node], &mut [Quad])| {
+        for (given, node) in given.iter_mut().zip(nodes) {
+            *given = w(node).into();
+        }
+    });
     let (active, given, pairs, simd) = (&*active, &shared.given[..], &cells.pairs[..], *simd);
     let cut = cells.portions.cut();
     let items = (0..pairs.len(), cells.portions.shares());
@@ -90,14 +135,28 @@ pub(super) fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -
             let nodes = active.tile_nodes(tile);
             prefetch_record(pairs, tile + 1);
             load_nodes(simd, &mut w, nodes, given);
-            flow(simd, &w, &pairs[tile], &mut sums);
+            match through {
+                Through::Differences => flow(simd, &w, &pairs[tile], &mut sums),
+                Through::All => product(simd, &w, &pairs[tile], &mut sums),
+            }
             share.give(simd, nodes, &sums, &nothing);
         }
     });
-    CORRECTION
 }
 
-/// Σ_j M_ij (w_i − w_j) at these nodes, after [`exchange`].
+/// Collects Σ_j M_ij (w_i − w_j) for [`changes`], w being accelerations (N) or averages (kg m/s), if masses are corrected.
+/// Returns θ.
+pub(super) fn correct(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -> f64 {
+    match sim.plan.numerics.mass {
+        MassMatrix::Lumped => 0.0,
+        MassMatrix::Corrected => {
+            exchange(sim, w, Through::Differences);
+            CORRECTION
+        }
+    }
+}
+
+/// Σ_j M_ij (w_i − w_j) at these nodes, after [`correct`].
 pub(super) fn changes(theta: f64, nodes: Range<usize>, portions: &Portions) -> [Quad; BLOCK] {
     match theta {
         0.0 => [Quad::default(); BLOCK],
@@ -116,7 +175,7 @@ pub(super) fn change(theta: f64, mass: f64, sum: Quad) -> Vec3 {
 
 /// What particles receive of the nodes' accelerations in a kick of length `h`.
 pub(super) fn receive(sim: &mut Simulation, h: f64) {
-    let theta = exchange(sim, |node| node.acceleration);
+    let theta = correct(sim, |node| node.acceleration);
     let Simulation {
         active,
         nodes,
@@ -127,22 +186,22 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         ..
     } = sim;
     let (active, portions, constraints) = (&*active, &cells.portions, &*constraints);
-    let items = (0..nodes.len(), &mut nodes[..], &mut shared.given[..]);
-    let gain = fold(items, BLOCK, &|(slots, nodes, given): (
+    let items = (0..nodes.len(), &mut nodes[..], &mut shared.received[..]);
+    let gain = fold(items, BLOCK, &|(slots, nodes, received): (
         Range<usize>,
         &mut [Node],
         &mut [Quad],
     )| {
         let mut gain = 0.0;
         let changes = changes(theta, slots.clone(), portions);
-        for (((slot, node), given), sum) in slots.zip(nodes).zip(given).zip(changes) {
+        for (((slot, node), received), sum) in slots.zip(nodes).zip(received).zip(changes) {
             let change = change(theta, node.mass, sum);
             node.received = node.acceleration
                 + match constraints.of(active.nodes[slot]) {
                     Some(constraint) => constraint.free * change,
                     None => change,
                 };
-            *given = node.received.into();
+            *received = node.received.into();
             gain += h * node.mass * node.velocity.dot(node.received);
         }
         gain

@@ -105,6 +105,29 @@ impl Guests {
         }
     }
 
+    /// They have only been looked at.
+    fn dismiss(&mut self, particles: &mut Particles) {
+        if !self.present {
+            return;
+        }
+        self.present = false;
+        let Particles {
+            id,
+            body,
+            element,
+            mass,
+            volume,
+            ..
+        } = particles;
+        put_back(mass, &self.homes);
+        put_back(volume, &self.homes);
+        let count = mass.len();
+        id.truncate(count);
+        body.truncate(count);
+        element.truncate(count);
+        particles.columns_mut().for_each(|c| c.truncate(count));
+    }
+
     fn leave(&mut self, particles: &mut Particles) {
         if !self.present {
             return;
@@ -145,6 +168,11 @@ impl Simulation {
     /// Guests come for a part of the step.
     pub(super) fn guests_arrive(&mut self) {
         self.guests.arrive(&mut self.particles);
+    }
+
+    /// The same where nothing has changed.
+    pub(super) fn guests_dismiss(&mut self) {
+        self.guests.dismiss(&mut self.particles);
     }
 
     pub(super) fn guests_leave(&mut self) {

@@ -57,6 +57,7 @@ pub(crate) use state::{
 pub(crate) use stress::Answers;
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;
+pub(crate) use to_particles::Pending;
 
 use crate::measure::Part;
 use crate::simulation::Simulation;
@@ -88,13 +89,11 @@ impl Simulation {
     /// Returns that coming step: the stable one, at most `limit` (0 at the end of a stage).
     pub(crate) fn kick(&mut self, before: f64, limit: f64) -> Result<f64, Stop> {
         self.profile.lap(Part::Between);
-        self.guests_arrive();
-        self.profile.lap(Part::Order);
-        let kicked = self.kick_all(before, limit);
-        self.guests_leave();
-        self.profile.lap(Part::Order);
-        match kicked? {
-            (_, kinetic) if !kinetic.is_finite() => Err(self.not_finite()),
+        match self.kick_all(before, limit)? {
+            (_, kinetic) if !kinetic.is_finite() => {
+                self.settle();
+                Err(self.not_finite())
+            }
             (dt, _) => Ok(dt),
         }
     }

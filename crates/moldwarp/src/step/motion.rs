@@ -43,20 +43,31 @@ fn is_inside(n: [f64; 4]) -> bool {
 }
 
 for_each_simd! {
+    /// Goes to the particles of the next slot.
+    pub(super) fn fetch(
+        motion: &mut Motion,
+        position: &[&[f64]; 3],
+        start: usize,
+        mass: &[f64],
+        lanes: usize,
+    ) {
+        load(&mut motion.position, position, start);
+        load_one(&mut motion.mass, mass, 0);
+        motion.mass[lanes..whole(lanes)].fill(0.0);
+    }
+}
+
+for_each_simd! {
     /// Moves particles.
     pub(super) fn go_along(
         motion: &mut Motion,
         shapes: &Shapes,
         strains: &CellStrain,
         gravity: Vec3,
-        mass: &[f64],
         position: &mut [&mut [f64]; 3],
         start: usize,
         lanes: usize,
     ) {
-        load(&mut motion.position, &position.each_ref().map(|x| &**x), start);
-        load_one(&mut motion.mass, mass, 0);
-        motion.mass[lanes..whole(lanes)].fill(0.0);
         for l in 0..whole(lanes) {
             let mut x = Vec3::from_array(get(&motion.position, l));
             // Σ N_i Δu_i is Δu of node 0 and, from there on, ∇Δu times the way.

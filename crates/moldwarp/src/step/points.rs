@@ -1,28 +1,22 @@
-//! The pass over particles: what a drift does to them, and in a mesh that stays the sums over those of each cell,
-//! with which the kick begins.
+//! The pass over particles: what they are still to receive of the last kick, what a drift does to them, and in a mesh that
+//! stays the sums over those of each cell, with which the next kick begins.
 //!
 //! One pass in place of three, since a particle's numbers come from memory: that takes longer than to compute with
 //! them.
 
 use super::collect::Shares;
-use super::motion::{Crossing, Motion, Search, go_along};
+use super::motion::{self, Crossing, Motion, Search, go_along};
 use super::state::Summed;
 use super::stress::{Arrays as Stressed, Stresses};
 use super::sums::{Asked, Counted, Records, Sums};
+use super::to_particles::{Before, Given, Kick};
 use super::{CellPairs, CellStress, CellSums};
-use crate::lanes::{ByTile, Lane, for_each_simd, load, prefetch, prefetch_record, whole};
+use crate::lanes::{ByTile, Lane, load, prefetch, prefetch_record, store};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
 
-for_each_simd! {
-    fn fetch(velocity: &mut [Lane; 3], columns: &[&[f64]; 3], start: usize, lanes: usize) {
-        debug_assert!(whole(lanes) >= lanes);
-        load(velocity, columns, start);
-    }
-}
-
-/// New stresses, volumes and positions of all particles. Returns whether one has lost all its volume, and what has
+/// New velocities, stresses, volumes and positions of all particles. Returns whether one has lost all its volume, and what has
 /// crossed faces, unless the mesh is still to move.
 pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     let Simulation {
@@ -39,6 +33,8 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         elasticity,
         reference,
         answers,
+        pending,
+        kinetic,
         simd,
         ..
     } = sim;
@@ -55,7 +51,12 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         element,
         ..
     } = particles;
-    let (body, mass, velocity) = (&body[..], &mass[..], velocity.components());
+    let (body, mass) = (&body[..], &mass[..]);
+    let given = Given {
+        pending: pending.take(),
+        received: &shared.received,
+        grid: &shared.grid,
+    };
     let search = Search {
         mesh: &plan.mesh,
         fields,
@@ -74,8 +75,10 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         state.components_mut(),
         &mut volume[..],
     );
-    type Arrays<'a> = (Stressed<'a>, [&'a mut [f64]; 3], &'a mut [u32]);
-    let arrays: Arrays = (stressed, position.components_mut(), &mut element[..]);
+    type Vectors<'a> = [&'a mut [f64]; 3];
+    type Arrays<'a> = (Stressed<'a>, (Vectors<'a>, Vectors<'a>), &'a mut [u32]);
+    let vectors = (position.components_mut(), velocity.components_mut());
+    let arrays: Arrays = (stressed, vectors, &mut element[..]);
     type Cells<'a> = (
         &'a mut [CellSums],
         &'a mut [CellPairs],
@@ -92,11 +95,11 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     let work = |block: ByTile<Arrays, (Cells, Shares<2>)>| {
         let first = block.first();
         let tiles = block.each();
-        let (mut stressed, mut position, elements) = block.particles;
+        let (mut stressed, (mut position, mut velocity), elements) = block.particles;
         let ((cell_sums, pairs, stresses), shares) = block.cells;
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
         let (mut sums, mut share) = (Sums::default(), shares.begin());
-        let mut speeds = [Lane::of(0.0); 3];
+        let (mut kick, mut speeds) = (Kick::default(), [Lane::of(0.0); 3]);
         let mut crossing = Crossing::default();
         let records = cell_sums.iter_mut().zip(pairs).zip(stresses);
         for ((number, tile), ((sum, pairs), cell_stress)) in tiles.zip(records) {
@@ -105,6 +108,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             prefetch_record(shapes, number + 1);
             let (strains, shapes) = (&strains[number], &shapes[number]);
             stress.enter(strains, nodes, shared);
+            kick.enter(simd, &given, nodes, shapes);
             let mut records = Records {
                 sum,
                 pairs,
@@ -121,8 +125,24 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 prefetch(&stressed.1.each_ref().map(|s| &**s), next);
                 prefetch(&[&*stressed.2], next);
                 prefetch(&position.each_ref().map(|x| &**x), next);
-                prefetch(&velocity, slot.end);
+                prefetch(&velocity.each_ref().map(|v| &**v), next);
                 prefetch(&[mass], slot.end);
+                let columns = position.each_ref().map(|x| &**x);
+                motion::fetch(
+                    simd,
+                    &mut motion,
+                    &columns,
+                    start,
+                    &mass[slot.start..],
+                    lanes,
+                );
+                load(&mut speeds, &velocity.each_ref().map(|v| &**v), start);
+                let before = Before {
+                    position: &motion.position,
+                    mass: &motion.mass,
+                };
+                kick.give(simd, &given, &before, &mut speeds, shapes, lanes);
+                store(&speeds, &mut velocity, start, lanes);
                 stress.update(strains, slot.clone(), bodies, &mut stressed, first);
                 go_along(
                     simd,
@@ -130,7 +150,6 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     shapes,
                     strains,
                     gravity,
-                    &mass[slot.start..],
                     &mut position,
                     start,
                     lanes,
@@ -139,10 +158,9 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     continue;
                 }
                 // What has come to another element counts there, as a guest.
-                let (elements, start) = (&mut elements[start..], slot.start);
+                let elements = &mut elements[start..];
                 let volume = &mut stress.points.volume;
                 motion.search(&search, slot, elements, &mut crossing, |l| volume[l] = 0.0);
-                fetch(simd, &mut speeds, &velocity, start, lanes);
                 let points = Counted {
                     shapes: &motion.shapes,
                     position: &motion.position,
@@ -158,12 +176,13 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 sums.leave(simd, tile, &mut records, nodes, &mut share);
             }
         }
-        ((stress.end(), motion.work()), crossing)
+        ((stress.end(), [motion.work(), kick.kinetic()]), crossing)
     };
-    let (((works, least), lifted), crossing): ((([f64; 3], Smallest), f64), Crossing) =
-        cut.fold(all, &work);
+    type Found = ((([f64; 3], Smallest), [f64; 2]), Crossing);
+    let (((works, least), sums), crossing): Found = cut.fold(all, &work);
     ledger.particle_stress_work(works);
-    ledger.gravity_work(lifted);
+    ledger.gravity_work(sums[0]);
+    *kinetic = Some(sums[1]);
     cells.summed = if stays { Summed::All } else { Summed::Nothing };
     (least.0 <= 0.0, crossing)
 }

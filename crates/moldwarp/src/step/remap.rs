@@ -16,7 +16,7 @@ use std::ops::Range;
 pub(super) fn run(sim: &mut Simulation, dt: f64) {
     hold(sim);
     contact::remap(sim, |node| &mut node.average);
-    let theta = correction::exchange(sim, |node| node.average);
+    let theta = correction::correct(sim, |node| node.average);
     correct(sim, theta);
     contact::remap(sim, |node| &mut node.grid_velocity);
     move_nodes(sim, dt);

@@ -53,8 +53,10 @@ pub struct Shared {
     pub mean_stress: Vec<f64>,
     /// Δu_i of the last drift, m.
     pub moved: Vec<Quad>,
-    /// What is exchanged between nodes and particles: accelerations or velocities.
+    /// What nodes exchange: accelerations or velocities.
     pub given: Vec<Quad>,
+    /// What particles receive of the last kick, m/s².
+    pub received: Vec<Quad>,
     /// Velocities that particles are drawn to by relaxation, m/s.
     pub grid: Vec<Quad>,
 }
@@ -70,7 +72,7 @@ impl Shared {
         ] {
             numbers.resize(nodes.len(), 0.0);
         }
-        for vectors in [&mut self.given, &mut self.grid] {
+        for vectors in [&mut self.given, &mut self.received, &mut self.grid] {
             vectors.resize(nodes.len(), Quad::default());
         }
         self.moved.clear();
@@ -90,8 +92,8 @@ pub struct CellSums {
     pub solid: Lane,
 }
 
-/// M_ij = Σ m_p N_i N_j of each pair of a cell's nodes: 01, 02, 03, 12, 13, 23, kg.
-pub type CellPairs = [Lane; 6];
+/// M_ij = Σ m_p N_i N_j of each pair of a cell's nodes: 01, 02, 03, 12, 13, 23, and 00, 11, 22, 33, kg.
+pub type CellPairs = [Lane; 10];
 
 /// Sums over the particles of each cell that make its stress.
 #[derive(Clone, Debug)]
@@ -238,7 +240,7 @@ impl Cells {
         let tiles = active.tiles.len();
         self.shapes.resize_with(tiles, Shapes::default);
         self.sums.resize_with(tiles, CellSums::default);
-        self.pairs.resize(tiles, [ZERO; 6]);
+        self.pairs.resize(tiles, [ZERO; 10]);
         self.stresses.resize_with(tiles, CellStress::default);
         self.forces.resize_with(tiles, CellForce::default);
         self.strains.resize_with(tiles, CellStrain::default);

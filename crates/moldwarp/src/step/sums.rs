@@ -71,7 +71,7 @@ for_each_simd! {
                 let momentum = corner(&sums.momentum, l, i) + v * share;
                 set_corner(&mut sums.momentum, l, i, momentum);
             }
-            for k in 0..6 {
+            for k in 0..10 {
                 let (i, j) = PAIRS[k];
                 pairs[k][l] += n[i] * n[j] * m;
             }
@@ -241,6 +241,15 @@ for_each_simd! {
 
 /// The sums that the last drift has not made: of all cells, or of those of guests.
 pub(super) fn run(sim: &mut Simulation) {
+    let made = std::mem::take(&mut sim.cells.summed);
+    if made != Summed::All {
+        sim.guests_arrive();
+        make(sim, made);
+        sim.guests_dismiss();
+    }
+}
+
+fn make(sim: &mut Simulation, made: Summed) {
     let Simulation {
         plan,
         particles,
@@ -263,10 +272,6 @@ pub(super) fn run(sim: &mut Simulation) {
         &'a mut [CellPairs],
         &'a mut [CellStress],
     );
-    let made = std::mem::take(&mut cells.summed);
-    if made == Summed::All {
-        return;
-    }
     let arrays = (
         &mut cells.sums[..],
         &mut cells.pairs[..],

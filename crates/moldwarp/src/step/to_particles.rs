@@ -1,175 +1,405 @@
-//! Stage 3: velocities of particles, v_p += h Σ N_i a_i (Jassim et al. Eq. 8), and the momenta
-//! of the updated particles for the remap.
+//! Stage 3: velocities of particles, v_p += h Σ N_i a_i (Jassim et al. Eq. 8), and what they are then at the nodes, for
+//! the remap.
+//!
+//! Nodes need not ask particles what these have received. With M_ij = Σ m_p N_i N_j, which cells have, the momenta of the
+//! updated particles are
+//!
+//!   Σ_p m_p v_p' N_i = m_i v_i + h Σ_j M_ij a_j,
+//!
+//! and their energy Σ ½ m_p |v_p|² + h Σ m_i v_i · a_i + ½ h² Σ a_i · M_ij a_j. So particles receive their velocities
+//! when the next drift goes through them (`points.rs`), or as soon as anyone wants to see them ([`Simulation::settle`]).
 
-use super::collect::{Portions, Shares};
-use super::corners::{
-    Corners, NO_CORNERS, all_corners, corner, interpolate, load_nodes, set_corner,
-};
+use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
+use super::correction::multiply;
 use super::shapes::Shapes;
-use super::{BLOCK, Node};
-use crate::Vec3;
+use super::{BLOCK, Node, strain};
 use crate::lanes::{
-    ByTile, Lane, for_each_simd, get, load, load_one, prefetch, set, store, sum as sum_lanes, whole,
+    ByTile, LANES, Lane, Simd, for_each_simd, get, load, load_one, prefetch, set, store,
+    sum as sum_lanes, whole,
 };
-use crate::parallel::fold;
+use crate::parallel::{self, fold};
 use crate::simulation::Simulation;
+use crate::{Mat3, Vec3};
 use std::ops::Range;
 
-/// Cells and particles side by side.
-struct Kick {
-    received: Corners,
+/// A kick that particles have not received yet.
+#[derive(Clone, Copy, Debug)]
+pub struct Pending {
+    /// Its length, s.
+    h: f64,
+    /// Part of the mesh's velocity that particles take on.
+    blend: f64,
+}
+
+/// A vector that varies linearly in cells side by side: at node 0, and its gradient by columns.
+struct Linear {
+    origin: [Lane; 3],
+    gradient: [Lane; 9],
+}
+
+/// Cells side by side, and what particles are given in them.
+pub(super) struct Kick {
+    corners: Corners,
+    received: Linear,
     /// v_i + h a_i, for relaxation.
-    grid: Corners,
-    /// Σ m_p v_p N_i of each cell.
-    momentum: Corners,
-    position: [Lane; 3],
-    velocity: [Lane; 3],
-    mass: Lane,
-    /// Sums for the ledger: Σ m |a|², energy taken by relaxation, Σ ½ m v².
-    energy: [Lane; 3],
+    grid: Linear,
+    /// Σ ½ m v², J.
+    kinetic: Lane,
+}
+
+impl Default for Linear {
+    fn default() -> Linear {
+        Linear {
+            origin: [Lane::of(0.0); 3],
+            gradient: [Lane::of(0.0); 9],
+        }
+    }
 }
 
 impl Default for Kick {
     fn default() -> Kick {
-        let vector = [Lane::of(0.0); 3];
         Kick {
-            received: NO_CORNERS,
-            grid: NO_CORNERS,
-            momentum: NO_CORNERS,
-            position: vector,
-            velocity: vector,
-            mass: Lane::of(0.0),
-            energy: vector,
+            corners: NO_CORNERS,
+            received: Linear::default(),
+            grid: Linear::default(),
+            kinetic: Lane::of(0.0),
         }
     }
 }
 
-/// Returns the energy of motion of the particles, J.
-pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
-    let h = before + after;
-    let Simulation {
-        plan,
-        particles,
-        active,
-        nodes,
-        shared,
-        cells,
-        ledger,
-        simd,
-        ..
-    } = sim;
-    // Part of the mesh's velocity that particles take on in a kick.
-    let blend = -libm::expm1(-plan.numerics.pic_rate * h);
-    if blend > 0.0 {
-        for (grid, node) in shared.grid.iter_mut().zip(&*nodes) {
-            *grid = (node.velocity + node.received * h).into();
+/// What nodes give to particles: accelerations, and velocities where there is relaxation.
+#[derive(Clone, Copy)]
+pub(super) struct Given<'a> {
+    pub pending: Option<Pending>,
+    pub received: &'a [Quad],
+    pub grid: &'a [Quad],
+}
+
+/// Particles side by side before they move.
+pub(super) struct Before<'a> {
+    pub position: &'a [Lane; 3],
+    pub mass: &'a Lane,
+}
+
+impl Kick {
+    /// Goes to the next cells.
+    #[inline]
+    pub fn enter(&mut self, simd: Simd, given: &Given, nodes: &[[u32; 4]; LANES], shapes: &Shapes) {
+        let Some(pending) = given.pending else {
+            return;
+        };
+        load_nodes(simd, &mut self.corners, nodes, given.received);
+        vary(simd, &mut self.received, &self.corners, shapes);
+        if pending.blend > 0.0 {
+            load_nodes(simd, &mut self.corners, nodes, given.grid);
+            vary(simd, &mut self.grid, &self.corners, shapes);
         }
     }
-    let (active, shared, simd) = (&*active, &*shared, *simd);
-    let (position, mass) = (particles.position.components(), &particles.mass[..]);
-    type Velocities<'a> = [&'a mut [f64]; 3];
-    let velocities = particles.velocity.components_mut();
-    let cut = cells.portions.cut();
-    let records = (cells.portions.shares(), &cells.shapes[..]);
-    let all = ByTile::new(&active.tiles, velocities, records);
-    type Records<'a> = (Shares<'a, 1>, &'a [Shapes]);
-    let sums = cut.fold(all, &|block: ByTile<Velocities, Records>| {
-        let first = block.first();
-        let tiles = block.each();
-        let (mut velocity, (shares, shapes)) = (block.particles, block.cells);
-        let (mut kick, mut share) = (Kick::default(), shares.begin());
-        let nothing = [Lane::of(0.0); 4];
-        for ((number, tile), shapes) in tiles.zip(shapes) {
-            let nodes = active.tile_nodes(number);
-            load_nodes(simd, &mut kick.received, nodes, &shared.given);
-            if blend > 0.0 {
-                load_nodes(simd, &mut kick.grid, nodes, &shared.grid);
-            }
-            kick.momentum = NO_CORNERS;
-            for slot in tile.slots() {
-                let points = Points {
-                    position,
-                    mass,
-                    start: slot.start,
-                    first,
-                };
-                let (own, lanes) = (&mut velocity, slot.len());
-                prefetch(&position, slot.end);
-                prefetch(&[mass], slot.end);
-                prefetch(&own.each_ref().map(|v| &**v), slot.end - first);
-                accelerate(simd, &mut kick, &points, shapes, own, h, blend, lanes);
-            }
-            tile.gather(&mut kick.momentum);
-            share.give(simd, nodes, &kick.momentum, &nothing);
+
+    /// Gives particles of these velocities what they have not received yet.
+    #[inline]
+    pub fn give(
+        &mut self,
+        simd: Simd,
+        given: &Given,
+        points: &Before,
+        velocity: &mut [Lane; 3],
+        shapes: &Shapes,
+        lanes: usize,
+    ) {
+        if let Some(pending) = given.pending {
+            accelerate(simd, self, points, shapes, velocity, pending, lanes);
         }
-        kick.energy.each_ref().map(sum_lanes)
-    });
-    average(nodes, &cells.portions);
-    ledger.end_kick(sums, before, after);
-    sums[2]
+        count(simd, &mut self.kinetic, points.mass, velocity, lanes);
+    }
+
+    /// Energy of motion of all particles, J.
+    pub fn kinetic(&self) -> f64 {
+        sum_lanes(&self.kinetic)
+    }
 }
 
-/// v̄_i.
-fn average(nodes: &mut [Node], portions: &Portions) {
-    fold((0..nodes.len(), nodes), BLOCK, &|(slots, nodes): (
-        Range<usize>,
-        &mut [Node],
-    )| {
-        let [momenta]: [[_; BLOCK]; 1] = portions.sums(slots);
-        for (node, momentum) in nodes.iter_mut().zip(momenta) {
-            node.average = if node.mass > 0.0 {
-                momentum.vector() / node.mass
-            } else {
-                Vec3::ZERO
-            };
+for_each_simd! {
+    fn vary(linear: &mut Linear, corners: &Corners, shapes: &Shapes) {
+        for l in 0..LANES {
+            let corners = all_corners(corners, l);
+            let gradient = strain::gradient(&shapes.gradients(l), corners);
+            set(&mut linear.origin, l, corners[0].to_array());
+            set(&mut linear.gradient, l, gradient.to_cols_array());
         }
-    });
+    }
 }
 
-/// The particles of a slot.
-struct Points<'a> {
-    position: [&'a [f64]; 3],
-    mass: &'a [f64],
-    /// The first of them, and the first of the block.
-    start: usize,
-    first: usize,
+impl Linear {
+    #[inline(always)]
+    fn at(&self, l: usize, arm: Vec3) -> Vec3 {
+        let gradient = Mat3::from_cols_array(&get(&self.gradient, l));
+        Vec3::from_array(get(&self.origin, l)) + gradient * arm
+    }
 }
 
 for_each_simd! {
     fn accelerate(
         kick: &mut Kick,
-        points: &Points,
+        points: &Before,
         shapes: &Shapes,
-        velocity: &mut [&mut [f64]; 3],
-        h: f64,
-        blend: f64,
+        velocity: &mut [Lane; 3],
+        pending: Pending,
         lanes: usize,
     ) {
-        let own = points.start - points.first;
-        load(&mut kick.position, &points.position, points.start);
-        load(&mut kick.velocity, &velocity.each_ref().map(|v| &**v), own);
-        load_one(&mut kick.mass, points.mass, points.start);
-        kick.mass[lanes..whole(lanes)].fill(0.0);
         for l in 0..whole(lanes) {
-            let n = shapes.at(l, Vec3::from_array(get(&kick.position, l)));
-            let a = interpolate(n, all_corners(&kick.received, l));
-            let m = kick.mass[l];
-            let mut v = Vec3::from_array(get(&kick.velocity, l));
-            v += a * h;
-            kick.energy[0][l] += m * a.length_squared();
-            let own = v.length_squared();
-            if blend > 0.0 {
-                let grid = interpolate(n, all_corners(&kick.grid, l));
-                v += (grid - v) * blend;
-                kick.energy[1][l] += 0.5 * m * (own - v.length_squared());
+            let arm = shapes.arm(l, Vec3::from_array(get(points.position, l)));
+            let mut v = Vec3::from_array(get(velocity, l));
+            v += kick.received.at(l, arm) * pending.h;
+            if pending.blend > 0.0 {
+                v += (kick.grid.at(l, arm) - v) * pending.blend;
             }
-            kick.energy[2][l] += 0.5 * m * v.length_squared();
-            set(&mut kick.velocity, l, v.to_array());
-            for i in 0..4 {
-                let sum = corner(&kick.momentum, l, i) + v * (n[i] * m);
-                set_corner(&mut kick.momentum, l, i, sum);
+            set(velocity, l, v.to_array());
+        }
+    }
+}
+
+for_each_simd! {
+    fn count(kinetic: &mut Lane, mass: &Lane, velocity: &[Lane; 3], lanes: usize) {
+        for l in 0..whole(lanes) {
+            let v = Vec3::from_array(get(velocity, l));
+            kinetic[l] += 0.5 * mass[l] * v.length_squared();
+        }
+    }
+}
+
+/// Velocities of the updated particles at the nodes. Returns their energy of motion, J.
+pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
+    let h = before + after;
+    let blend = -libm::expm1(-sim.plan.numerics.pic_rate * h);
+    let first = sim.kinetic.take().unwrap_or_else(|| kinetic(sim));
+    multiply(sim, |node| node.received);
+    let [gain, square] = take(sim, |node, product| {
+        let works = [
+            node.momentum().dot(node.received),
+            product.dot(node.received),
+        ];
+        node.average = match node.mass {
+            0.0 => Vec3::ZERO,
+            mass => node.velocity + product * (h / mass),
+        };
+        works
+    });
+    let free = first + h * gain + 0.5 * h * h * square;
+    let mut kinetic = free;
+    if blend > 0.0 {
+        for (grid, node) in sim.shared.grid.iter_mut().zip(&sim.nodes) {
+            *grid = (node.velocity + node.received * h).into();
+        }
+        multiply(sim, |node| node.velocity + node.received * h);
+        let [mixed, grid] = take(sim, |node, product| {
+            let own = node.velocity + node.received * h;
+            let works = [node.mass * node.average.dot(own), product.dot(own)];
+            if node.mass > 0.0 {
+                node.average = node.average * (1.0 - blend) + product * (blend / node.mass);
+            }
+            works
+        });
+        let rest = 1.0 - blend;
+        kinetic = rest * rest * free + blend * rest * mixed + 0.5 * blend * blend * grid;
+    }
+    sim.pending = Some(Pending { h, blend });
+    let sums = [square, free - kinetic, kinetic];
+    sim.ledger.end_kick(sums, before, after);
+    kinetic
+}
+
+impl Node {
+    /// Momentum before the kick, N s.
+    fn momentum(&self) -> Vec3 {
+        self.velocity * self.mass
+    }
+}
+
+/// Calls `work` on each node with Σ_j M_ij w_j, and adds up what it says.
+fn take(sim: &mut Simulation, work: impl Fn(&mut Node, Vec3) -> [f64; 2] + Sync) -> [f64; 2] {
+    let portions = &sim.cells.portions;
+    let items = (0..sim.nodes.len(), &mut sim.nodes[..]);
+    fold(items, BLOCK, &|(slots, nodes): (
+        Range<usize>,
+        &mut [Node],
+    )| {
+        let [products]: [[Quad; BLOCK]; 1] = portions.sums(slots);
+        let mut all = [0.0; 2];
+        for (node, product) in nodes.iter_mut().zip(products) {
+            let works = work(node, product.vector());
+            (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
+        }
+        all
+    })
+}
+
+/// Σ ½ m v² of the particles as they are, J.
+fn kinetic(sim: &Simulation) -> f64 {
+    let (mass, velocity) = (&sim.particles.mass[..], &sim.particles.velocity);
+    fold(0..mass.len(), BLOCK, &|particles: Range<usize>| {
+        let of = |p: usize| 0.5 * mass[p] * velocity.at(p).length_squared();
+        particles.map(of).sum::<f64>()
+    })
+}
+
+impl Simulation {
+    /// Gives particles what they have not received yet of the last kick, so that their velocities can be seen.
+    pub fn settle(&mut self) {
+        if self.pending.is_some() {
+            parallel::inside(|| {
+                self.guests_arrive();
+                settle(self);
+                self.guests_leave();
+            });
+        }
+    }
+}
+
+fn settle(sim: &mut Simulation) {
+    let Simulation {
+        particles,
+        active,
+        shared,
+        cells,
+        pending,
+        simd,
+        ..
+    } = sim;
+    let given = Given {
+        pending: pending.take(),
+        received: &shared.received,
+        grid: &shared.grid,
+    };
+    let (active, simd) = (&*active, *simd);
+    let (position, mass) = (particles.position.components(), &particles.mass[..]);
+    type Velocities<'a> = [&'a mut [f64]; 3];
+    let velocities = particles.velocity.components_mut();
+    let all = ByTile::new(&active.tiles, velocities, &cells.shapes[..]);
+    fold(all, super::TILES, &|block: ByTile<
+        Velocities,
+        &[Shapes],
+    >| {
+        let first = block.first();
+        let tiles = block.each().zip(block.cells);
+        let mut own = block.particles;
+        let (mut kick, mut mass_lane) = (Kick::default(), Lane::of(0.0));
+        let (mut x, mut v) = ([Lane::of(0.0); 3], [Lane::of(0.0); 3]);
+        for ((number, tile), shapes) in tiles {
+            kick.enter(simd, &given, active.tile_nodes(number), shapes);
+            for slot in tile.slots() {
+                let (start, lanes) = (slot.start - first, slot.len());
+                prefetch(&position, slot.end);
+                load(&mut x, &position, slot.start);
+                load(&mut v, &own.each_ref().map(|v| &**v), start);
+                load_one(&mut mass_lane, mass, slot.start);
+                let points = Before {
+                    position: &x,
+                    mass: &mass_lane,
+                };
+                kick.give(simd, &given, &points, &mut v, shapes, lanes);
+                store(&v, &mut own, start, lanes);
             }
         }
-        store(&kick.velocity, velocity, own, lanes);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{LinearElastic, Material};
+    use crate::mesh::box_mesh;
+    use crate::plan::*;
+
+    /// A heap that falls apart, some of its particles being guests: what nodes know of the updated particles is what these
+    /// have when they have received it, and when they do makes no difference.
+    #[test]
+    fn nodes_know_what_particles_receive() {
+        let heap = |pic_rate: f64| {
+            let elastic = LinearElastic {
+                young_modulus: 1e5,
+                poisson_ratio: 0.2,
+            };
+            let (min, max) = (Vec3::ZERO, Vec3::new(1.0, 1.0, 2.0));
+            let mesh = box_mesh(Vec3::new(3.0, 1.0, 3.0), [6, 2, 6]).unwrap();
+            let bottom = mesh.surface("z-min").unwrap();
+            let plan = Plan {
+                title: String::new(),
+                gravity: Vec3::new(0.0, 0.0, -9.81),
+                mesh,
+                symmetry: None,
+                materials: vec![NamedMaterial {
+                    name: "jelly".into(),
+                    density: 1000.0,
+                    model: Material::LinearElastic(elastic),
+                }],
+                bodies: vec![Body {
+                    name: "heap".into(),
+                    place: Place::Region(Region::Box { min, max }),
+                    material: 0,
+                    seeding: Seeding::Four,
+                }],
+                boundaries: vec![Boundary {
+                    name: "floor".into(),
+                    surfaces: vec![bottom],
+                    kind: BoundaryKind::Fixed {
+                        directions: [true; 3],
+                    },
+                }],
+                loads: vec![],
+                contacts: vec![],
+                probes: vec![],
+                initial_stress: None,
+                inherited: Default::default(),
+                mesh_motion: None,
+                numerics: Numerics {
+                    pic_rate,
+                    ..Numerics::default()
+                },
+                stages: vec![Stage::new("run", Until::Steps(100))],
+            };
+            let mut sim = Simulation::new(plan).unwrap();
+            sim.set_velocity(|x| Vec3::new(0.3 * x.z, 0.0, 0.2 * (x.x - 0.5)))
+                .unwrap();
+            sim
+        };
+        for pic_rate in [0.0, 20.0] {
+            let (mut sim, mut other) = (heap(pic_rate), heap(pic_rate));
+            let (mut met, mut guests) = (0, 0);
+            while !sim.finished() {
+                sim.step_and(|_| ()).unwrap();
+                other.step().unwrap();
+                let averages: Vec<Vec3> = sim.nodes.iter().map(|node| node.average).collect();
+                if sim.steps().is_multiple_of(5) {
+                    sim.settle();
+                }
+                if sim.pending.is_some() {
+                    continue;
+                }
+                assert_eq!(sim.particles.velocity, other.particles.velocity);
+                let known = sim.ledger.particles();
+                assert!((kinetic(&sim) / known - 1.0).abs() < 1e-12);
+                let mut momenta = vec![Vec3::ZERO; sim.nodes.len()];
+                for p in 0..sim.particles.len() {
+                    let e = sim.particles.element[p];
+                    guests += usize::from(e != sim.order.filed[p]);
+                    let n = (sim.plan.mesh).barycentric(e as usize, sim.particles.position.at(p));
+                    let cell = sim.active.cell(e as usize, 0).unwrap();
+                    let momentum = sim.particles.velocity.at(p) * sim.particles.mass[p];
+                    for (n, slot) in n.into_iter().zip(sim.active.cell_nodes[cell]) {
+                        momenta[slot as usize] += momentum * n;
+                    }
+                }
+                for ((node, average), momentum) in sim.nodes.iter().zip(averages).zip(momenta) {
+                    let own = average * node.mass;
+                    assert!(
+                        (own - momentum).length() <= 1e-12 * node.mass,
+                        "{own} {momentum}"
+                    );
+                }
+                met += 1;
+            }
+            assert!(met >= 20 && guests > 0, "{met} {guests}");
+        }
     }
 }

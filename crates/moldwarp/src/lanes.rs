@@ -441,31 +441,38 @@ pub fn load_one(lane: &mut Lane, column: &[f64], start: usize) {
 /// Has the numbers of the particles of a slot fetched from memory, to be there when it is their turn.
 #[inline(always)]
 pub fn prefetch<const N: usize>(columns: &[&[f64]; N], start: usize) {
-    #[cfg(target_arch = "x86_64")]
     for column in columns {
         for line in 0..LANES / 8 {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            let place = column.as_ptr().wrapping_add(start + 8 * line);
-            // SAFETY: a hint may have any address.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast()) };
+            prefetch_line(column.as_ptr().wrapping_add(start + 8 * line));
         }
     }
+}
+
+#[inline(always)]
+fn prefetch_line<T>(place: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a hint may have any address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast()) };
+    }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (columns, start);
+    let _ = place;
+}
+
+/// The same for their bodies.
+#[inline(always)]
+pub fn prefetch_bodies(bodies: &[u16], start: usize) {
+    prefetch_line(bodies.as_ptr().wrapping_add(start));
 }
 
 /// The same for a record.
 #[inline(always)]
 pub fn prefetch_record<T>(records: &[T], number: usize) {
-    #[cfg(target_arch = "x86_64")]
+    let record = records.as_ptr().wrapping_add(number).cast::<u8>();
     for line in 0..size_of::<T>() / 64 {
-        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
-        let place = records.as_ptr().wrapping_add(number).cast::<i8>();
-        // SAFETY: a hint may have any address.
-        unsafe { _mm_prefetch::<_MM_HINT_T1>(place.wrapping_add(64 * line)) };
+        prefetch_line(record.wrapping_add(64 * line));
     }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (records, number);
 }
 
 /// Copies the first numbers of lanes to the particles from `start` on.
@@ -521,6 +528,19 @@ pub fn set<const N: usize>(lanes: &mut [Lane; N], l: usize, values: [f64; N]) {
 #[inline(always)]
 pub fn either<T>(condition: bool, a: T, b: T) -> T {
     std::hint::select_unpredictable(condition, a, b)
+}
+
+/// Whether all are the same. (Without leaving early, as in [`any`]: that keeps a loop scalar.)
+#[inline(always)]
+pub fn alike(bodies: &[u16]) -> bool {
+    let first = bodies[0];
+    bodies.iter().fold(true, |all, &body| all & (body == first))
+}
+
+/// Whether any is greater than zero.
+#[inline(always)]
+pub fn any(numbers: &[f64]) -> bool {
+    numbers.iter().fold(false, |any, &x| any | (x > 0.0))
 }
 
 /// Σ over the lanes, in their order.

@@ -128,6 +128,15 @@ impl Particles {
         self.columns_mut().for_each(|column| retain(column, keep));
     }
 
+    /// The numbers that a step works with, one array a component.
+    pub(crate) fn working_columns_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        (self.position.columns_mut().iter_mut())
+            .chain(self.velocity.columns_mut())
+            .chain(self.stress.columns_mut())
+            .chain(self.state.columns_mut())
+            .chain([&mut self.volume, &mut self.mass])
+    }
+
     /// All numbers of particles, one array a component.
     pub(crate) fn columns_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         (self.position.columns_mut().iter_mut())

@@ -137,12 +137,15 @@ impl Portions {
         }
     }
 
-    /// The sums of these nodes, by quads.
+    /// Finds the sums of these nodes, by quads.
+    #[inline]
     pub fn sums<const N: usize, const NODES: usize>(
         &self,
         nodes: Range<usize>,
-    ) -> [[Quad; NODES]; N] {
-        let mut sums = [[Quad::default(); NODES]; N];
+        sums: &mut [[Quad; NODES]; N],
+    ) {
+        let count = nodes.len();
+        (sums.iter_mut()).for_each(|sums| sums[..count].fill(Quad::default()));
         for window in &self.windows {
             let own = window.nodes();
             let both = own.start.max(nodes.start)..own.end.min(nodes.end);
@@ -157,7 +160,6 @@ impl Portions {
                 }
             }
         }
-        sums
     }
 }
 
@@ -270,7 +272,9 @@ mod tests {
         let nodes = cells.len() + 3;
         for first in (0..nodes).step_by(100) {
             let range = first..(first + 100).min(nodes);
-            let [sums, alike]: [[Quad; 100]; 2] = portions.sums(range.clone());
+            let mut quads = [[Quad::default(); 100]; 2];
+            portions.sums(range.clone(), &mut quads);
+            let [sums, alike] = quads;
             for ((n, sum), alike) in range.zip(sums).zip(alike) {
                 let times = (n + 1).min(nodes - n).min(4) as f64;
                 assert_eq!(sum, Quad([times, 0.0, 0.0, times * n as f64]));

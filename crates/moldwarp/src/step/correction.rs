@@ -157,10 +157,14 @@ pub(super) fn correct(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) ->
 }
 
 /// Σ_j M_ij (w_i − w_j) at these nodes, after [`correct`].
-pub(super) fn changes(theta: f64, nodes: Range<usize>, portions: &Portions) -> [Quad; BLOCK] {
-    match theta {
-        0.0 => [Quad::default(); BLOCK],
-        _ => portions.sums::<1, BLOCK>(nodes)[0],
+pub(super) fn changes(
+    theta: f64,
+    nodes: Range<usize>,
+    portions: &Portions,
+    changes: &mut [[Quad; BLOCK]; 1],
+) {
+    if theta != 0.0 {
+        portions.sums(nodes, changes);
     }
 }
 
@@ -193,8 +197,9 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         &mut [Quad],
     )| {
         let mut gain = 0.0;
-        let changes = changes(theta, slots.clone(), portions);
-        for (((slot, node), received), sum) in slots.zip(nodes).zip(received).zip(changes) {
+        let mut sums = [[Quad::default(); BLOCK]];
+        changes(theta, slots.clone(), portions, &mut sums);
+        for (((slot, node), received), &sum) in slots.zip(nodes).zip(received).zip(&sums[0]) {
             let change = change(theta, node.mass, sum);
             node.received = node.acceleration
                 + match constraints.of(active.nodes[slot]) {

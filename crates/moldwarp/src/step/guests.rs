@@ -80,7 +80,7 @@ impl Guests {
         id.reserve_exact(most);
         body.reserve_exact(most);
         element.reserve_exact(most);
-        (particles.columns_mut()).for_each(|column| column.reserve_exact(most));
+        (particles.working_columns_mut()).for_each(|column| column.reserve_exact(most));
     }
 
     /// Most tiles that they can take.
@@ -99,7 +99,7 @@ impl Guests {
         copy(id, &self.homes);
         copy(body, &self.homes);
         copy(element, &self.homes);
-        particles.columns_mut().for_each(|c| copy(c, &self.homes));
+        (particles.working_columns_mut()).for_each(|c| copy(c, &self.homes));
         for &p in &self.homes {
             (particles.mass[p as usize], particles.volume[p as usize]) = (0.0, 0.0);
         }
@@ -125,7 +125,7 @@ impl Guests {
         id.truncate(count);
         body.truncate(count);
         element.truncate(count);
-        particles.columns_mut().for_each(|c| c.truncate(count));
+        (particles.working_columns_mut()).for_each(|c| c.truncate(count));
     }
 
     fn leave(&mut self, particles: &mut Particles) {
@@ -139,9 +139,7 @@ impl Guests {
         put_back(id, &self.homes);
         put_back(body, &self.homes);
         put_back(element, &self.homes);
-        particles
-            .columns_mut()
-            .for_each(|c| put_back(c, &self.homes));
+        (particles.working_columns_mut()).for_each(|c| put_back(c, &self.homes));
     }
 }
 

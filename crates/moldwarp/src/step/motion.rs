@@ -7,7 +7,7 @@ use crate::Mat3;
 use crate::Vec3;
 use crate::boundary::Outflow;
 use crate::contact::{Contacts, Fields};
-use crate::lanes::{Lane, either, for_each_simd, get, load, load_one, set, store, sum, whole};
+use crate::lanes::{Lane, any, either, for_each_simd, get, load, load_one, set, store, sum, whole};
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{First, Sum};
 use std::ops::Range;
@@ -115,7 +115,7 @@ impl Motion {
         crossing: &mut Crossing,
         mut gone: impl FnMut(usize),
     ) {
-        if self.left[..slot.len()].iter().all(|&left| left == 0.0) {
+        if !any(&self.left[..slot.len()]) {
             return;
         }
         for (l, p) in slot.enumerate() {

@@ -11,7 +11,7 @@ use super::stress::{Arrays as Stressed, Stresses};
 use super::sums::{Asked, Counted, Records, Sums};
 use super::to_particles::{Before, Given, Kick};
 use super::{CellPairs, CellStress, CellSums};
-use crate::lanes::{ByTile, Lane, load, prefetch, prefetch_record, store};
+use crate::lanes::{ByTile, Lane, load, prefetch, prefetch_bodies, prefetch_record, store};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
@@ -127,6 +127,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 prefetch(&position.each_ref().map(|x| &**x), next);
                 prefetch(&velocity.each_ref().map(|v| &**v), next);
                 prefetch(&[mass], slot.end);
+                prefetch_bodies(body, slot.end);
                 let columns = position.each_ref().map(|x| &**x);
                 motion::fetch(
                     simd,

@@ -73,8 +73,9 @@ fn correct(sim: &mut Simulation, theta: f64) {
         Range<usize>,
         &mut [Node],
     )| {
-        let changes = correction::changes(theta, slots.clone(), portions);
-        for ((slot, node), change) in slots.zip(nodes).zip(changes) {
+        let mut changes = [[Quad::default(); BLOCK]];
+        correction::changes(theta, slots.clone(), portions, &mut changes);
+        for ((slot, node), &change) in slots.zip(nodes).zip(&changes[0]) {
             node.grid_velocity = node.average + correction::change(theta, node.mass, change);
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =

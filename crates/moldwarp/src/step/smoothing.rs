@@ -61,8 +61,9 @@ fn means_at_nodes(portions: &Portions, means: &mut [f64], factor: f64) {
         Range<usize>,
         &mut [f64],
     )| {
-        let [sums]: [[_; BLOCK]; 1] = portions.sums(slots);
-        for (mean, Quad([sum, all, ..])) in means.iter_mut().zip(sums) {
+        let mut sums = [[Quad::default(); BLOCK]];
+        portions.sums(slots, &mut sums);
+        for (mean, &Quad([sum, all, ..])) in means.iter_mut().zip(&sums[0]) {
             let whole = factor * all;
             *mean = if all > 0.0 { sum / whole } else { 0.0 };
         }

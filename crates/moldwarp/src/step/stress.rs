@@ -9,8 +9,8 @@ use super::strain::midpoint;
 use super::{CellStrain, Shared, smoothing};
 use crate::Mat3;
 use crate::lanes::{
-    self, LANES, Lane, Simd, VoigtLanes, either, for_each_simd, get, load, load_one, set, store,
-    store_one, whole,
+    self, LANES, Lane, Simd, VoigtLanes, alike, any, either, for_each_simd, get, load, load_one,
+    set, store, store_one, whole,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
 use crate::parallel::{Smallest, Sum};
@@ -162,6 +162,12 @@ impl Points {
     ) {
         let lanes = body.len();
         self.separated[..lanes].fill(0.0);
+        if alike(body) {
+            let open = |k: usize| any(&states[k][start..start + lanes]);
+            if !model(body[0]).opening().is_some_and(open) {
+                return;
+            }
+        }
         for (l, &body) in body.iter().enumerate() {
             let model = model(body);
             let p = start + l;
@@ -186,7 +192,7 @@ impl Points {
             Material::External(_) => answers.give(all, place, lanes),
             _ => model.update_lanes(simd, all, lanes),
         };
-        if body.iter().all(|&b| b == first) {
+        if alike(body) {
             return update(model(first), &mut self.increment);
         }
         let before = self.increment.clone();

@@ -11,7 +11,8 @@ use super::state::Summed;
 use super::{CellPairs, CellStress, CellSums, Reference};
 use crate::Vec3;
 use crate::lanes::{
-    ByTile, Contents, LANES, Lane, Simd, VoigtLanes, for_each_simd, get, load, load_one, set, whole,
+    ByTile, Contents, LANES, Lane, Simd, VoigtLanes, alike, any, for_each_simd, get, load,
+    load_one, set, whole,
 };
 use crate::material::STATE_SIZE;
 use crate::particles::Particles;
@@ -22,8 +23,12 @@ use crate::simulation::Simulation;
 pub(super) struct Sums {
     /// Shares of the volume that have not opened, and that are not separated.
     shares: [Lane; 2],
+    /// Whether these are all one.
+    closed: bool,
     /// λ, G and E_c, Pa.
     elasticity: [Lane; 3],
+    /// The body whose they are in all lanes.
+    of: Option<u16>,
     /// Σ m_p v_p N_i of each cell.
     momentum: Corners,
 }
@@ -32,7 +37,9 @@ impl Default for Sums {
     fn default() -> Sums {
         Sums {
             shares: [Lane::of(1.0); 2],
+            closed: true,
             elasticity: [Lane::of(0.0); 3],
+            of: None,
             momentum: NO_CORNERS,
         }
     }
@@ -165,26 +172,29 @@ impl Sums {
         let (plan, elasticity) = (asked.plan, asked.elasticity);
         let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
         let (first, lanes) = (bodies[0], bodies.len());
-        let alike = bodies.iter().all(|&b| b == first);
+        let alike = alike(bodies);
         if alike {
-            for (lane, modulus) in (self.elasticity.iter_mut()).zip(elasticity[usize::from(first)])
-            {
-                lane[..lanes].fill(modulus);
+            if self.of != Some(first) {
+                self.of = Some(first);
+                let moduli = elasticity[usize::from(first)];
+                self.elasticity = moduli.map(Lane::of);
             }
         } else {
+            self.of = None;
             for (l, &body) in bodies.iter().enumerate() {
                 set(&mut self.elasticity, l, elasticity[usize::from(body)]);
             }
         }
-        let closed = alike
-            && model(first).opening().is_none_or(|k| {
-                let opening = &points.state[k][..lanes];
-                opening.iter().all(|&w| w == 0.0)
-            });
+        let closed =
+            alike && (model(first).opening()).is_none_or(|k| !any(&points.state[k][..lanes]));
         if closed {
-            self.shares.iter_mut().for_each(|s| s[..lanes].fill(1.0));
+            if !self.closed {
+                self.closed = true;
+                self.shares = [Lane::of(1.0); 2];
+            }
             return;
         }
+        self.closed = false;
         for (l, &body) in bodies.iter().enumerate() {
             let (stress, state) = (get(points.stress, l), get(points.state, l));
             let model = model(body);

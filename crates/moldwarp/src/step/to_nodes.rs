@@ -50,11 +50,12 @@ fn sum_nodes(sim: &mut Simulation) {
         &mut [Node],
         Numbers,
     )| {
-        let [sums, alike]: [[_; BLOCK]; 2] = portions.sums(slots.clone());
+        let mut quads = [[Quad::default(); BLOCK]; 2];
+        portions.sums(slots.clone(), &mut quads);
         let numbers = fillings.iter_mut().zip(densities);
-        let sums = sums.into_iter().zip(alike);
+        let sums = quads[0].iter().zip(&quads[1]);
         for (((slot, node), sums), (filling, density)) in slots.zip(nodes).zip(sums).zip(numbers) {
-            let (Quad([x, y, z, mass]), Quad([volume, all_mass, ..])) = sums;
+            let (&Quad([x, y, z, mass]), &Quad([volume, all_mass, ..])) = sums;
             let momentum = Vec3::new(x, y, z);
             let grid = active.keys[slot] % grid_nodes;
             let mut whole = walls.volume(mesh, grid);

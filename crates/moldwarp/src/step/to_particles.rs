@@ -224,9 +224,10 @@ fn take(sim: &mut Simulation, work: impl Fn(&mut Node, Vec3) -> [f64; 2] + Sync)
         Range<usize>,
         &mut [Node],
     )| {
-        let [products]: [[Quad; BLOCK]; 1] = portions.sums(slots);
+        let mut products = [[Quad::default(); BLOCK]];
+        portions.sums(slots, &mut products);
         let mut all = [0.0; 2];
-        for (node, product) in nodes.iter_mut().zip(products) {
+        for (node, product) in nodes.iter_mut().zip(&products[0]) {
             let works = work(node, product.vector());
             (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
         }

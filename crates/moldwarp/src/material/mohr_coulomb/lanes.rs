@@ -20,9 +20,14 @@ impl MohrCoulomb {
         let mut sure: Lane = Lane::of(0.0);
         predict(simd, self, s, lanes, &mut sure);
         s.plastic = false;
+        s.state[3][..lanes].fill(0.0);
+        // Without leaving early, that it be done side by side.
+        let calm = |l: usize| (s.state[2][l] <= 0.0) & (sure[l] > 0.0);
+        if (0..lanes).fold(true, |all, l| all & calm(l)) {
+            return;
+        }
         let (mut unsure, mut count) = ([0u8; LANES], 0);
         for l in 0..lanes {
-            s.state[3][l] = 0.0;
             if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
                 s.plastic = true;
             } else if sure[l] == 0.0 {

@@ -2,7 +2,7 @@
 
 use super::super::{State, Strained};
 use super::{MohrCoulomb, MohrCoulombState, YieldState, compose, equivalent_strain};
-use crate::lanes::{LANES, Lane, Simd, VoigtLanes, either, for_each_simd, get, set, whole};
+use crate::lanes::{LANES, Lane, Simd, VoigtLanes, any, either, for_each_simd, get, set, whole};
 use crate::tensor::{self, Voigt};
 
 /// Stresses to return, and what has become of them.
@@ -13,6 +13,17 @@ struct Returned {
     opening: Lane,
     /// 1 where the stress has to be returned on its own.
     odd: Lane,
+}
+
+impl Default for Returned {
+    fn default() -> Returned {
+        Returned {
+            stress: [Lane::of(0.0); 6],
+            yielding: Lane::of(0.0),
+            opening: Lane::of(0.0),
+            odd: Lane::of(1.0),
+        }
+    }
 }
 
 impl MohrCoulomb {
@@ -27,15 +38,21 @@ impl MohrCoulomb {
             return;
         }
         let (mut unsure, mut count) = ([0u8; LANES], 0);
-        for l in 0..lanes {
-            if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
-                s.plastic = true;
-            } else if sure[l] == 0.0 {
-                unsure[count] = l as u8;
-                count += 1;
+        if any(&s.state[2][..lanes]) {
+            for l in 0..lanes {
+                if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
+                    (s.plastic, sure[l]) = (true, 1.0);
+                }
             }
         }
-        if count > 0 {
+        for (l, _) in sure[..lanes].iter().enumerate().filter(|l| *l.1 == 0.0) {
+            unsure[count] = l as u8;
+            count += 1;
+        }
+        // Where most yield they are returned where they are; where few do, these are brought together.
+        if 3 * count > lanes && !self.corners.has_cutoff() {
+            s.plastic |= self.return_in_place(simd, s, &mut sure, lanes);
+        } else if count > 0 {
             s.plastic |= self.return_lanes(simd, s, &unsure[..count]);
         }
         if s.plastic {
@@ -57,14 +74,36 @@ impl MohrCoulomb {
         true
     }
 
+    /// Returns the predictors that are not sure; says whether any of them yields.
+    fn return_in_place(&self, simd: Simd, s: &mut Strained, sure: &mut Lane, lanes: usize) -> bool {
+        sure[lanes..whole(lanes)].fill(1.0);
+        let mut r = Returned {
+            stress: s.stress,
+            ..Returned::default()
+        };
+        return_side_by_side(simd, self, &mut r, lanes);
+        take_over(simd, s, &mut r, sure, lanes);
+        if any(&r.odd[..lanes]) {
+            for l in (0..lanes).filter(|&l| r.odd[l] > 0.0) {
+                let step = self.return_map(&get(&s.stress, l));
+                r.yielding[l] = f64::from(step.yielding as u8);
+                if r.yielding[l] > 0.0 {
+                    self.keep(s, l, step.stress, step.opening, r.yielding[l]);
+                }
+            }
+        }
+        any(&r.yielding[..lanes])
+    }
+
+    fn keep(&self, s: &mut Strained, l: usize, stress: Voigt, opening: f64, yielding: f64) {
+        set(&mut s.stress, l, stress);
+        s.state[2][l] = (s.state[2][l] + opening).max(0.0);
+        s.state[3][l] = yielding;
+    }
+
     /// Returns the predictors in these lanes; says whether any of them yields.
     fn return_lanes(&self, simd: Simd, s: &mut Strained, unsure: &[u8]) -> bool {
-        let mut r = Returned {
-            stress: [Lane::of(0.0); 6],
-            yielding: Lane::of(0.0),
-            opening: Lane::of(0.0),
-            odd: Lane::of(1.0),
-        };
+        let mut r = Returned::default();
         for (i, &l) in unsure.iter().enumerate() {
             set(&mut r.stress, i, get(&s.stress, l.into()));
         }
@@ -82,9 +121,7 @@ impl MohrCoulomb {
             }
             if r.yielding[i] > 0.0 {
                 any = true;
-                set(&mut s.stress, l, get(&r.stress, i));
-                s.state[2][l] = (s.state[2][l] + r.opening[i]).max(0.0);
-                s.state[3][l] = r.yielding[i];
+                self.keep(s, l, get(&r.stress, i), r.opening[i], r.yielding[i]);
             }
         }
         any
@@ -124,6 +161,25 @@ for_each_simd! {
             r.yielding[l] = either(elastic, 0.0, yielding);
             r.opening[l] = found.opening;
             r.odd[l] = either(ordinary, 0.0, 1.0);
+        }
+    }
+}
+
+for_each_simd! {
+    /// Takes over what has been returned where a predictor was not sure.
+    fn take_over(s: &mut Strained, r: &mut Returned, sure: &Lane, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let unsure = sure[l] == 0.0;
+            r.odd[l] = either(unsure, r.odd[l], 0.0);
+            let returned = unsure & (r.odd[l] == 0.0) & (r.yielding[l] > 0.0);
+            r.yielding[l] = either(returned, r.yielding[l], 0.0);
+            let opened = s.state[2][l] + r.opening[l];
+            let opened = either(opened > 0.0, opened, 0.0);
+            s.state[2][l] = either(returned, opened, s.state[2][l]);
+            s.state[3][l] = either(returned, r.yielding[l], s.state[3][l]);
+            for k in 0..6 {
+                s.stress[k][l] = either(returned, r.stress[k][l], s.stress[k][l]);
+            }
         }
     }
 }

@@ -9,6 +9,7 @@
 //! bits with any instruction set.
 
 use crate::parallel::Split;
+use std::cmp::Reverse;
 use std::ops::{Deref, DerefMut, Range};
 
 /// Lanes of a window.
@@ -183,6 +184,9 @@ pub struct Helper {
     pub of: u8,
 }
 
+/// Neighbouring cells that tiles are made of.
+const WINDOW: usize = 128;
+
 /// Most particles of a lane, unless their cell would take more than a tile.
 const DEEP: u32 = 8;
 
@@ -198,6 +202,31 @@ pub struct Pile {
     pub count: u32,
     /// Whether it is a helper's.
     pub more: bool,
+}
+
+/// Cells with their numbers, in windows those with most particles first: tiles of cells with as many particles have
+/// hardly an empty lane.
+fn alike_together(
+    cells: impl Iterator<Item = (u32, u32)>,
+) -> impl Iterator<Item = (usize, u32, u32)> {
+    let mut cells = cells
+        .enumerate()
+        .map(|(cell, (first, count))| (cell, first, count));
+    let (mut window, mut next, mut filled) = ([(0, 0, 0); WINDOW], 0, 0);
+    std::iter::from_fn(move || {
+        if next == filled {
+            (next, filled) = (0, 0);
+            for (place, cell) in window.iter_mut().zip(&mut cells) {
+                *place = cell;
+                filled += 1;
+            }
+            window[..filled].sort_unstable_by_key(|&(cell, _, count)| (Reverse(count), cell));
+        }
+        (next < filled).then(|| {
+            next += 1;
+            window[next - 1]
+        })
+    })
 }
 
 impl Tiles {
@@ -239,7 +268,7 @@ impl Tiles {
         mut put: impl FnMut(u32, u32),
     ) {
         let (mut piles, mut lanes) = ([Pile::default(); LANES], 0);
-        for (cell, (first, count)) in cells.enumerate() {
+        for (cell, first, count) in alike_together(cells) {
             let deep = DEEP.max(count.div_ceil(LANES as u32));
             let wanted = count.div_ceil(deep).max(1) as usize;
             if lanes + wanted > LANES {

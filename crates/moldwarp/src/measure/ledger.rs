@@ -23,6 +23,8 @@ use crate::step::Node;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DriftWork {
     total: f64,
+    /// Of the forces that stresses make.
+    internal: f64,
     gravity: f64,
     /// Of the difference between the weights of nodes and those of particles.
     evened: f64,
@@ -39,6 +41,7 @@ impl DriftWork {
     pub fn add(&mut self, node: &Node, gravity: Vec3) {
         let moved = 0.5 * node.moved;
         self.total += node.mass * node.acceleration.dot(moved);
+        self.internal += node.internal.dot(moved);
         self.gravity += node.mass * gravity.dot(moved);
         self.evened += (node.weighed - node.mass) * gravity.dot(moved);
         self.load += node.load.dot(moved);
@@ -53,6 +56,7 @@ impl Sum for DriftWork {
     fn plus(self, other: DriftWork) -> DriftWork {
         DriftWork {
             total: self.total + other.total,
+            internal: self.internal + other.internal,
             gravity: self.gravity + other.gravity,
             evened: self.evened + other.evened,
             load: self.load + other.load,
@@ -249,16 +253,22 @@ impl Ledger {
         self.particles
     }
 
-    /// Half a drift's work of cells: [particles' stresses, mean minus particles', viscous].
-    pub(crate) fn grid_stress_work(&mut self, [particles, difference, viscous]: [f64; 3]) {
-        self.now.advection += particles;
-        self.now.integration += difference;
-        self.now.damping += viscous;
+    /// Half a drift's work of the particles' stresses in cells: a part of the forces' work.
+    pub(crate) fn grid_stress_work(&mut self, work: f64) {
+        self.now.advection += work;
+        self.now.integration -= work;
     }
 
-    /// Half a drift's work of what smoothing adds to the cells' mean stresses.
+    /// The same of viscous stresses.
+    pub(crate) fn viscous_work(&mut self, work: f64) {
+        self.now.damping += work;
+        self.now.integration -= work;
+    }
+
+    /// The same of what smoothing adds to the cells' mean stresses.
     pub(crate) fn stress_smoothing_work(&mut self, work: f64) {
         self.now.smoothing += work;
+        self.now.integration -= work;
     }
 
     /// A drift's work in particles: [σ : (Δε̄ − Δε^p) V, what smoothing left out, σ : Δε^p V].
@@ -303,7 +313,8 @@ impl Ledger {
     fn half(&mut self, work: DriftWork) {
         self.now.transfer += work.total;
         self.now.advection -= work.gravity;
-        self.now.integration -= work.evened;
+        // Forces do what stresses of cells take up.
+        self.now.integration -= work.internal + work.evened;
         self.now.load += work.load;
         self.now.damping -= work.damping;
         self.now.absorbed -= work.absorbing;

@@ -38,6 +38,7 @@ saved!(Node {
     grid_velocity,
     moved,
     weighed,
+    internal,
 });
 
 saved!(CellSums {
@@ -93,6 +94,7 @@ impl crate::saved::Saved for Cells {
             portions: _,
             // Made anew.
             summed: _,
+            worked: _,
         } = self;
         sums.save(out);
         pairs.save(out);

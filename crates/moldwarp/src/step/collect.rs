@@ -54,9 +54,10 @@ impl Cut {
     }
 
     /// The same for the portions of guests only.
-    pub fn fold_guests<S: Split>(self, items: S, work: &(impl Fn(S) + Sync)) {
-        if items.count() > self.own {
-            parallel::fold(items.split(self.own).1, self.tiles, work);
+    pub fn fold_guests<S: Split, T: Sum>(self, items: S, work: &(impl Fn(S) -> T + Sync)) -> T {
+        match items.count() > self.own {
+            true => parallel::fold(items.split(self.own).1, self.tiles, work),
+            false => T::default(),
         }
     }
 }

@@ -49,6 +49,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             }
             let mesh_node = active.nodes[slot];
             let (internal, weighed) = pushed(sum);
+            node.internal = internal;
             node.weighed = if weighs { weighed } else { node.mass };
             let unbalanced = internal + gravity * node.weighed + node.load;
             let constraint = constraints.of(mesh_node);

@@ -7,11 +7,12 @@
 use super::collect::Shares;
 use super::motion::{self, Crossing, Motion, Search, go_along};
 use super::state::Summed;
+use super::strain::own_work;
 use super::stress::{Arrays as Stressed, Stresses};
 use super::sums::{Asked, Counted, Records, Sums};
 use super::to_particles::{Before, Given, Kick};
 use super::{CellPairs, CellStress, CellSums};
-use crate::lanes::{ByTile, Lane, load, prefetch, prefetch_bodies, prefetch_record, store};
+use crate::lanes::{self, ByTile, Lane, load, prefetch, prefetch_bodies, prefetch_record, store};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
@@ -101,12 +102,15 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut sums, mut share) = (Sums::default(), shares.begin());
         let (mut kick, mut speeds) = (Kick::default(), [Lane::of(0.0); 3]);
         let mut crossing = Crossing::default();
+        // Work of the particles' stresses in the halves of the drift.
+        let (mut begun, mut ended) = (Lane::of(0.0), [Lane::of(0.0); 2]);
         let records = cell_sums.iter_mut().zip(pairs).zip(stresses);
         for ((number, tile), ((sum, pairs), cell_stress)) in tiles.zip(records) {
             let nodes = active.tile_nodes(number);
             prefetch_record(strains, number + 1);
             prefetch_record(shapes, number + 1);
             let (strains, shapes) = (&strains[number], &shapes[number]);
+            own_work(simd, strains, cell_stress, &mut begun);
             stress.enter(strains, nodes, shared);
             kick.enter(simd, &given, nodes, shapes);
             let mut records = Records {
@@ -175,15 +179,21 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             }
             if stays {
                 sums.leave(simd, tile, &mut records, nodes, &mut share);
+                let guests = usize::from(number >= active.own_tiles());
+                own_work(simd, strains, records.stress, &mut ended[guests]);
             }
         }
-        ((stress.end(), [motion.work(), kick.kinetic()]), crossing)
+        let [begun, own, guests] = [&begun, &ended[0], &ended[1]].map(lanes::sum);
+        let sums = [motion.work(), kick.kinetic(), begun, own, guests];
+        ((stress.end(), sums), crossing)
     };
-    type Found = ((([f64; 3], Smallest), [f64; 2]), Crossing);
+    type Found = ((([f64; 3], Smallest), [f64; 5]), Crossing);
     let (((works, least), sums), crossing): Found = cut.fold(all, &work);
     ledger.particle_stress_work(works);
     ledger.gravity_work(sums[0]);
     *kinetic = Some(sums[1]);
+    ledger.grid_stress_work(sums[2]);
+    cells.worked = [sums[3], sums[4]];
     cells.summed = if stays { Summed::All } else { Summed::Nothing };
     (least.0 <= 0.0, crossing)
 }

@@ -38,6 +38,8 @@ pub struct Node {
     /// The mass whose weight pulls at the node, kg: `mass`, but for a reference stress (see
     /// `step/reference.rs`).
     pub weighed: f64,
+    /// −Σ S ∇N_i of the attached cells.
+    pub internal: Vec3,
 }
 
 /// What cells read of nodes, in arrays of their own: they stay in the cache.
@@ -151,6 +153,9 @@ pub struct Cells {
     pub portions: Portions,
     /// Whose sums the last drift has made.
     pub summed: Summed,
+    /// Half the work of the particles' stresses in the last drift as far as sums are made: of cells without guests, and
+    /// of guests, J.
+    pub worked: [f64; 2],
 }
 
 /// Cells that have their sums.

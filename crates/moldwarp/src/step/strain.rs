@@ -5,6 +5,7 @@ use super::corners::{Corners, NO_CORNERS, all_corners, load_nodes};
 use super::shapes::Shapes;
 use super::{CellForce, CellStrain, CellStress, CellSums, Cells, smoothing};
 use crate::lanes::{self, LANES, Lane, for_each_simd, get, set};
+use crate::plan::Smoothing;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3, tensor};
 use std::ops::Range;
@@ -38,21 +39,25 @@ pub(super) fn midpoint(gradient: &Mat3) -> Mat3 {
     *gradient * inverse
 }
 
-/// Half the work of a cell's stresses on its deformation, J: of the particles', of what the cell's differs
-/// from it, of the viscous part and of what smoothing has added.
-#[inline(always)]
-pub(super) fn half_work(
-    l: usize,
-    gradient: &Mat3,
-    stress: &CellStress,
-    force: &CellForce,
-) -> [f64; 4] {
-    let strain = tensor::strain(gradient);
-    let own = 0.5 * tensor::dot(&get(&stress.stress, l), &strain);
-    let smoothed = 0.5 * force.smoothed[l] * tensor::trace(&strain);
-    let all = 0.5 * tensor::dot(&get(&force.stress, l), &strain) - smoothed;
-    let viscous = 0.5 * tensor::dot(&get(&force.viscous, l), &strain);
-    [own, all - own, viscous, smoothed]
+for_each_simd! {
+    /// Half the work of the particles' stresses on the deformation of their cells, J.
+    pub(super) fn own_work(strains: &CellStrain, stress: &CellStress, work: &mut Lane) {
+        for l in 0..LANES {
+            let strain = tensor::strain(&Mat3::from_cols_array(&get(&strains.gradient, l)));
+            work[l] += 0.5 * tensor::dot(&get(&stress.stress, l), &strain);
+        }
+    }
+}
+
+for_each_simd! {
+    /// The same of viscous stresses, and of what smoothing has added.
+    fn more_work(strains: &CellStrain, force: &CellForce, works: &mut [Lane; 2]) {
+        for l in 0..LANES {
+            let strain = tensor::strain(&Mat3::from_cols_array(&get(&strains.gradient, l)));
+            works[0][l] += 0.5 * tensor::dot(&get(&force.viscous, l), &strain);
+            works[1][l] += 0.5 * force.smoothed[l] * tensor::trace(&strain);
+        }
+    }
 }
 
 /// Records of a tile that the deformation works on.
@@ -69,7 +74,6 @@ for_each_simd! {
         moved: &Corners,
         strains: &mut CellStrain,
         weights: &mut [Lane; 2],
-        works: &mut [Lane; 4],
     ) {
         let Worked { shapes, sum, stress, force } = tile;
         for l in 0..LANES {
@@ -83,16 +87,13 @@ for_each_simd! {
             let (volume, whole) = (sum.volume[l], shapes.volume[l]);
             let weight = smoothing::weight(force.filled[l], volume, stress.closed[l], whole);
             set(weights, l, [volumetric * weight, weight]);
-            let work = half_work(l, &gradient, stress, force);
-            for k in 0..4 {
-                works[k][l] += work[k];
-            }
         }
     }
 }
 
 fn gradients(sim: &mut Simulation) {
     let Simulation {
+        plan,
         active,
         shared,
         cells,
@@ -100,6 +101,8 @@ fn gradients(sim: &mut Simulation) {
         simd,
         ..
     } = sim;
+    let numerics = &plan.numerics;
+    let more = numerics.viscosity > 0.0 || numerics.smoothing == Smoothing::Conjugate;
     let (active, shared, simd) = (&*active, &*shared, *simd);
     let Cells {
         shapes,
@@ -120,7 +123,7 @@ fn gradients(sim: &mut Simulation) {
         Shares<1>,
     )| {
         let (mut moved, mut share) = (NO_CORNERS, shares.begin());
-        let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 4]);
+        let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
         for (tile, strains) in tiles.zip(strains) {
             let nodes = active.tile_nodes(tile);
             load_nodes(simd, &mut moved, nodes, &shared.moved);
@@ -130,11 +133,14 @@ fn gradients(sim: &mut Simulation) {
                 stress: &stresses[tile],
                 force: &forces[tile],
             };
-            deform(simd, &tile, &moved, strains, &mut weights, &mut works);
+            deform(simd, &tile, &moved, strains, &mut weights);
+            if more {
+                more_work(simd, strains, tile.force, &mut works);
+            }
             share.give_alike(simd, nodes, weights.each_ref());
         }
         works.each_ref().map(lanes::sum)
     });
-    ledger.grid_stress_work([work[0], work[1], work[2]]);
-    ledger.stress_smoothing_work(work[3]);
+    ledger.viscous_work(work[0]);
+    ledger.stress_smoothing_work(work[1]);
 }

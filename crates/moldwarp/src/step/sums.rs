@@ -4,20 +4,21 @@
 //! not know, or all of it, is made up for here.
 
 use super::collect::{Share, Shares};
-use super::corners::{Corners, NO_CORNERS, corner, set_corner};
+use super::corners::{Corners, NO_CORNERS, all_corners, corner, load_nodes, set_corner};
 use super::correction::PAIRS;
 use super::shapes::Shapes;
 use super::state::Summed;
-use super::{CellPairs, CellStress, CellSums, Reference};
+use super::{CellPairs, CellStress, CellSums, Reference, strain};
 use crate::Vec3;
 use crate::lanes::{
-    ByTile, Contents, LANES, Lane, Simd, VoigtLanes, alike, any, for_each_simd, get, load,
+    self, ByTile, Contents, LANES, Lane, Simd, VoigtLanes, alike, any, for_each_simd, get, load,
     load_one, set, whole,
 };
 use crate::material::STATE_SIZE;
 use crate::particles::Particles;
 use crate::plan::Plan;
 use crate::simulation::Simulation;
+use crate::tensor;
 
 /// What the sums of cells side by side are made of, beside what their records have.
 pub(super) struct Sums {
@@ -249,28 +250,36 @@ for_each_simd! {
     }
 }
 
-/// The sums that the last drift has not made: of all cells, or of those of guests.
-pub(super) fn run(sim: &mut Simulation) {
+/// The sums that the last drift has not made: of all cells, or of those of guests; and the second half of the work of the
+/// particles' stresses in it.
+pub(super) fn run(sim: &mut Simulation, before: f64) {
     let made = std::mem::take(&mut sim.cells.summed);
+    let [own, guests] = std::mem::take(&mut sim.cells.worked);
     if made != Summed::All {
         sim.guests_arrive();
-        make(sim, made);
+        let work = make(sim, made, before > 0.0);
         sim.guests_dismiss();
+        let known = if made == Summed::Own { own } else { 0.0 };
+        sim.ledger.grid_stress_work(known + work);
+    } else {
+        sim.ledger.grid_stress_work(own + guests);
     }
 }
 
-fn make(sim: &mut Simulation, made: Summed) {
+/// Returns half the work in the last drift, J, if it has `drifted`, of the particles in the cells that it has been to.
+fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
     let Simulation {
         plan,
         particles,
         active,
+        shared,
         cells,
         elasticity,
         reference,
         simd,
         ..
     } = sim;
-    let (active, particles) = (&*active, &*particles);
+    let (active, shared, particles) = (&*active, &*shared, &*particles);
     let asked = Asked {
         plan,
         elasticity,
@@ -295,6 +304,7 @@ fn make(sim: &mut Simulation, made: Summed) {
         let tiles = block.each();
         let ((cell_sums, pairs, stresses), shares, shapes) = block.cells;
         let (mut side, mut sums, mut share) = (Side::default(), Sums::default(), shares.begin());
+        let (mut moved, mut work) = (NO_CORNERS, Lane::of(0.0));
         let arrays = cell_sums.iter_mut().zip(pairs).zip(stresses).zip(shapes);
         for ((number, tile), (((sum, pairs), stress), shapes)) in tiles.zip(arrays) {
             let mut records = Records { sum, pairs, stress };
@@ -321,10 +331,26 @@ fn make(sim: &mut Simulation, made: Summed) {
             }
             let nodes = active.tile_nodes(number);
             sums.leave(asked.simd, tile, &mut records, nodes, &mut share);
+            if drifted {
+                load_nodes(asked.simd, &mut moved, nodes, &shared.moved);
+                half_work(asked.simd, shapes, &moved, records.stress, &mut work);
+            }
         }
+        lanes::sum(&work)
     };
     match made {
         Summed::Own => cut.fold_guests(all, &work),
         _ => cut.fold(all, &work),
+    }
+}
+
+for_each_simd! {
+    /// Half the work of the particles' stresses on what the last drift has done to their cells, J.
+    fn half_work(shapes: &Shapes, moved: &Corners, stress: &CellStress, work: &mut Lane) {
+        for l in 0..LANES {
+            let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
+            let strain = tensor::strain(&gradient);
+            work[l] += 0.5 * tensor::dot(&get(&stress.stress, l), &strain);
+        }
     }
 }

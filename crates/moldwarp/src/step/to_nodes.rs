@@ -18,7 +18,7 @@ use std::ops::Range;
 const FILLED: f64 = 0.6;
 
 pub(super) fn run(sim: &mut Simulation, before: f64) {
-    sums::run(sim);
+    sums::run(sim, before);
     sim.count_guests();
     sum_nodes(sim);
     sim.profile.lap(Part::ToNodes);
@@ -104,8 +104,9 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     let reference = reference.as_ref().map(|r| r.at(*gravity));
     let mixed = plan.numerics.integration == Integration::Mixed;
     // A viscous stress is C : ε̇ times this over the last step; there is none before the first.
+    let viscosity = plan.numerics.viscosity;
     let per_step = if before > 0.0 {
-        plan.numerics.viscosity / (2.0 * before)
+        viscosity / (2.0 * before)
     } else {
         0.0
     };
@@ -121,6 +122,8 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     let (shapes, sums, stresses) = (&shapes[..], &sums[..], &stresses[..]);
     // Else forces are pushed when their stresses have been smoothed.
     let last = plan.numerics.smoothing != Smoothing::Conjugate;
+    // Whether anyone looks at stresses of cells afterwards.
+    let kept = !last || viscosity > 0.0;
     let cut = portions.cut();
     let items = (0..sums.len(), &mut forces[..], portions.shares());
     let work = cut.fold(items, &|(range, forces, shares): (
@@ -129,9 +132,10 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
         Shares<1>,
     )| {
         let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
-        let mut work: [Lane; 3] = [Lane::of(0.0); 3];
-        for (tile, force) in range.zip(forces) {
+        let (mut work, mut passing) = (Lane::of(0.0), CellForce::default());
+        for (tile, record) in range.zip(forces) {
             let nodes = active.tile_nodes(tile);
+            let force = if kept { &mut *record } else { &mut passing };
             for l in 0..LANES {
                 let filled = mixed && active.is_cell[tile * LANES + l];
                 let filled = filled && is_filled(&nodes[l], &shared.filling);
@@ -157,18 +161,24 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 };
                 set(&mut force.stress, l, mean.map(|s| s * mesh.volumes[e]));
             }
-            if before > 0.0 {
+            if per_step > 0.0 {
                 load_nodes(simd, &mut moved, nodes, &shared.moved);
-                resist(simd, shapes, sum, stress, force, &moved, per_step);
-                half_work(simd, shapes, stress, force, &moved, &mut work);
+                resist(
+                    simd, shapes, sum, stress, force, &moved, per_step, &mut work,
+                );
+            } else if viscosity > 0.0 {
+                force.viscous = [Lane::of(0.0); 6];
             }
             if last {
                 push(simd, shapes, force, nodes, &mut pushed, &mut share);
             }
+            if !kept {
+                (record.filled, record.density) = (passing.filled, passing.density);
+            }
         }
-        work.each_ref().map(lanes::sum)
+        lanes::sum(&work)
     });
-    ledger.grid_stress_work(work);
+    ledger.viscous_work(work);
 }
 
 for_each_simd! {
@@ -190,55 +200,25 @@ for_each_simd! {
     }
 }
 
-/// Viscous stresses; `per_step` is what a strain of the last step is multiplied by.
-fn resist(
-    simd: Simd,
-    shapes: &Shapes,
-    sum: &CellSums,
-    stress: &CellStress,
-    force: &mut CellForce,
-    moved: &Corners,
-    per_step: f64,
-) {
-    if per_step == 0.0 {
-        return;
-    }
-    resist_strain(simd, shapes, sum, stress, force, moved, per_step);
-}
-
 for_each_simd! {
-    fn resist_strain(
+    /// Viscous stresses, and half their work in the last drift; `per_step` is what a strain of it is multiplied by.
+    fn resist(
         shapes: &Shapes,
         sum: &CellSums,
         stress: &CellStress,
         force: &mut CellForce,
         moved: &Corners,
         per_step: f64,
+        work: &mut Lane,
     ) {
         for l in 0..LANES {
             let full = (force.filled[l] > 0.0) & (sum.volume[l] > 0.0);
             let fuller = either(full, shapes.volume[l] / sum.volume[l], 1.0);
             let moduli = get(&stress.moduli, l).map(|m| m * per_step * fuller);
             let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
-            set(&mut force.viscous, l, viscous(&gradient, moduli));
-        }
-    }
-}
-
-for_each_simd! {
-    fn half_work(
-        shapes: &Shapes,
-        stress: &CellStress,
-        force: &CellForce,
-        moved: &Corners,
-        work: &mut [Lane; 3],
-    ) {
-        for l in 0..LANES {
-            let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
-            let own = strain::half_work(l, &gradient, stress, force);
-            for k in 0..3 {
-                work[k][l] += own[k];
-            }
+            let viscous = viscous(&gradient, moduli);
+            set(&mut force.viscous, l, viscous);
+            work[l] += 0.5 * tensor::dot(&viscous, &tensor::strain(&gradient));
         }
     }
 }

@@ -44,7 +44,8 @@ fn an_interrupted_run_goes_on_with_other_output_and_another_end() {
                 .contains("duration = \"3 s\"")
         );
         let pvd = bench.read("out/column/particles.pvd");
-        assert!(pvd.matches("<DataSet ").count() <= 4, "{pvd}");
+        // Two of the way, the end, and perhaps one before it: how long the last stage takes is known only then.
+        assert!(pvd.matches("<DataSet ").count() <= 5, "{pvd}");
     }
 }
 

@@ -8,6 +8,7 @@ mod errors;
 mod law;
 mod lease;
 mod mesh;
+mod report;
 mod scene;
 mod simulation;
 
@@ -18,6 +19,8 @@ use pyo3::prelude::*;
 mod _moldwarp {
     #[pymodule_export]
     use super::lease::Lease;
+    #[pymodule_export]
+    use super::report::{report_in, report_of};
     #[pymodule_export]
     use super::scene::{Scene, quantity};
     #[pymodule_export]

@@ -29,15 +29,13 @@ pub struct Cell {
     pub held: Option<Arc<Held>>,
     laws: Vec<Arc<PythonLaw>>,
     /// Threads of its own, if it was to have a number of them.
-    threads: Option<rayon::ThreadPool>,
+    pub threads: Option<rayon::ThreadPool>,
     /// Places by id, until something changes.
     places: Option<Arc<Vec<u32>>>,
     /// Velocities at t = 0 by id, if they were assigned, until the first step.
     start: Option<Vec<f64>>,
     /// Whether stresses were assigned before the first step.
     stressed: bool,
-    /// Seconds spent in steps, and particles times steps.
-    pace: (f64, f64),
 }
 
 impl Cell {
@@ -79,17 +77,16 @@ impl Cell {
         // A time that is a sum of steps may miss the wanted one by round-off.
         let reached = |session: &Session| session.simulation().time() >= time * (1.0 - 1e-12);
         while done < steps && !self.session.simulation().finished() && !reached(&self.session) {
-            let particles = self.session.simulation().particles().len();
-            let stepped = self.session.step();
-            self.pace.1 += particles as f64;
-            stepped?;
+            self.session.step()?;
             done += 1;
             let interrupted = |law: &Arc<PythonLaw>| law.was_interrupted();
-            if begun.elapsed() >= budget || self.laws.iter().any(interrupted) {
+            if begun.elapsed() >= budget
+                || self.laws.iter().any(interrupted)
+                || self.session.has_lost_a_frame()
+            {
                 break;
             }
         }
-        self.pace.0 += begun.elapsed().as_secs_f64();
         Ok(done)
     }
 
@@ -112,7 +109,13 @@ impl Cell {
             return Err(errors::stop(&stop));
         }
         self.session.record_again();
-        Ok(())
+        self.lost_frame()
+    }
+
+    /// Raises what has kept a frame from being written.
+    fn lost_frame(&mut self) -> PyResult<()> {
+        let lost = self.session.lost_frame();
+        lost.map_or(Ok(()), |error| Err(errors::frame(error)))
     }
 }
 
@@ -155,7 +158,7 @@ fn pool(threads: Option<usize>) -> PyResult<Option<rayon::ThreadPool>> {
 }
 
 /// With threads of its own, or with those of all.
-fn within<T: Send>(threads: &Option<rayon::ThreadPool>, f: impl FnOnce() -> T + Send) -> T {
+pub fn within<T: Send>(threads: &Option<rayon::ThreadPool>, f: impl FnOnce() -> T + Send) -> T {
     match threads {
         Some(threads) => threads.install(f),
         None => f(),
@@ -173,7 +176,6 @@ impl Simulation {
             places: None,
             start: None,
             stressed: false,
-            pace: (0.0, 0.0),
         };
         Simulation {
             cell: Mutex::new(cell),
@@ -238,6 +240,14 @@ impl Simulation {
             .map_err(|error| errors::session(&error))
     }
 
+    /// Keeps frames in an empty folder from now on.
+    fn keep_frames(&self, py: Python, folder: PathBuf) -> PyResult<()> {
+        let mut cell = self.look()?;
+        let session = &mut cell.session;
+        py.detach(|| session.keep_frames(&folder))
+            .map_err(errors::frame)
+    }
+
     /// At most `steps` steps, up to the first at or after `time` (s), for about `budget` seconds of wall
     /// time. Python's lock is released meanwhile.
     fn advance(&self, py: Python, steps: u64, time: f64, budget: f64) -> PyResult<u64> {
@@ -251,7 +261,7 @@ impl Simulation {
         let interrupted = cell.laws.iter().filter(|law| law.interrupted()).count() > 0;
         match done {
             Ok(_) if interrupted => Err(PyKeyboardInterrupt::new_err(())),
-            Ok(done) => Ok(done),
+            Ok(done) => cell.lost_frame().map(|()| done),
             Err(stop) => {
                 let error = errors::stop(&stop);
                 if let Some(raised) = raised.into_iter().next() {
@@ -481,9 +491,7 @@ impl Simulation {
     /// Particles times steps per second of stepping.
     #[getter]
     fn rate(&self) -> PyResult<f64> {
-        let cell = self.look()?;
-        let (seconds, steps) = cell.pace;
-        Ok(if seconds > 0.0 { steps / seconds } else { 0.0 })
+        Ok(self.look()?.session.rate())
     }
 }
 

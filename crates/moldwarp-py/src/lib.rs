@@ -4,6 +4,7 @@
 //! of particles in and out, laws called back. What is convenience stands in `python/moldwarp`.
 
 mod arrays;
+mod copies;
 mod errors;
 mod law;
 mod lease;

@@ -1,5 +1,6 @@
 //! A simulation as Python sees it. The package's class of this name is made on top of it.
 
+use crate::copies::{Copies, Order};
 use crate::errors::{self, BusyError, FrozenError, StoppedError};
 use crate::law::PythonLaw;
 use crate::lease::{Held, Lease};
@@ -9,7 +10,7 @@ use moldwarp::Vec3;
 use moldwarp::measure::Energies;
 use moldwarp::particles::{Tensors, Vectors};
 use moldwarp_io::run::Session;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -32,6 +33,9 @@ pub struct Cell {
     pub threads: Option<rayon::ThreadPool>,
     /// Places by id, until something changes.
     places: Option<Arc<Vec<u32>>>,
+    /// Whether ids are 0 to n − 1, until something changes.
+    dense: Option<bool>,
+    copies: Copies,
     /// Velocities at t = 0 by id, if they were assigned, until the first step.
     start: Option<Vec<f64>>,
     /// Whether stresses were assigned before the first step.
@@ -51,7 +55,7 @@ impl Cell {
                 "the simulation has stopped and cannot go on: {reason}"
             )));
         }
-        self.places = None;
+        self.forget_order();
         if let Some(held) = self.held.take()
             && Arc::strong_count(&held) > 1
         {
@@ -59,6 +63,18 @@ impl Cell {
             held.keep(self.session.simulation_mut().take_particles());
         }
         Ok(())
+    }
+
+    fn forget_order(&mut self) {
+        self.places = None;
+        self.dense = None;
+    }
+
+    fn is_dense(&mut self) -> bool {
+        let particles = self.session.simulation().particles();
+        *self
+            .dense
+            .get_or_insert_with(|| arrays::is_dense(particles))
     }
 
     fn places(&mut self) -> Arc<Vec<u32>> {
@@ -103,7 +119,7 @@ impl Cell {
             .session
             .simulation_mut()
             .begin_with(&velocity, &stress, stressed);
-        self.places = None;
+        self.forget_order();
         if let Err(stop) = begun {
             self.session.stop(&stop);
             return Err(errors::stop(&stop));
@@ -174,6 +190,8 @@ impl Simulation {
             laws: laws.0.iter().map(|law| law.1.clone()).collect(),
             threads,
             places: None,
+            dense: None,
+            copies: Copies::default(),
             start: None,
             stressed: false,
         };
@@ -282,20 +300,26 @@ impl Simulation {
     fn array<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let mut cell = self.look()?;
         let count = cell.session.simulation().particles().len();
-        if name == "velocity" && cell.session.simulation().steps() == 0 {
-            if let Some(rows) = &cell.start {
-                return Ok(PyArray1::from_slice(py, rows)
-                    .reshape([count, 3])?
-                    .into_any());
-            }
-            let velocity = cell.session.simulation().velocities_at_the_start();
-            let places = cell.places();
-            return gathered(py, &velocity.components(), &places);
+        let at_start = name == "velocity" && cell.session.simulation().steps() == 0;
+        if let Some(rows) = cell.start.as_ref().filter(|_| at_start) {
+            return Ok(PyArray1::from_slice(py, rows)
+                .reshape([count, 3])?
+                .into_any());
         }
         let own = &mut *cell;
-        let places = py.detach(|| own.places());
-        let particles = cell.session.simulation().particles();
-        gathered(py, &arrays::components(particles, name)?, &places)
+        let dense = py.detach(|| own.is_dense());
+        let places = (!dense).then(|| py.detach(|| own.places()));
+        let particles = own.session.simulation().particles();
+        let order = match &places {
+            Some(places) => Order::Places(places),
+            None => Order::Ids(&particles.id),
+        };
+        let started = at_start.then(|| own.session.simulation().velocities_at_the_start());
+        let components = match &started {
+            Some(velocity) => velocity.components().to_vec(),
+            None => arrays::components(particles, name)?,
+        };
+        own.copies.copy(py, &components, order, &own.threads)
     }
 
     /// `id`, `body` or `element` of particles, by id.
@@ -500,27 +524,4 @@ fn vectors(rows: &[f64], places: &[u32]) -> Vectors {
     (0..places.len())
         .map(|p| Vec3::new(x[p], y[p], z[p]))
         .collect()
-}
-
-/// Rows by id: a copy that belongs to Python.
-fn gathered<'py>(
-    py: Python<'py>,
-    components: &[&[f64]],
-    places: &[u32],
-) -> PyResult<Bound<'py, PyAny>> {
-    let (count, width) = (places.len(), components.len());
-    // SAFETY: all of it is written below, before anybody else has it.
-    let array = unsafe { PyArray2::<f64>::new(py, [count, width], false) };
-    {
-        // SAFETY: it is new, contiguous and nobody else's.
-        let all = unsafe { array.as_slice_mut()? };
-        py.detach(|| arrays::gather(components, places, all));
-    }
-    let array = match width {
-        1 => array.reshape([count])?.into_any(),
-        _ => array.into_any(),
-    };
-    // What is written to a copy would be lost without a word.
-    array.call_method1("setflags", (false,))?;
-    Ok(array)
 }

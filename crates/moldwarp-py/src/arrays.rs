@@ -8,7 +8,13 @@ use moldwarp::particles::Particles;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+
+/// Whether ids are 0 to n − 1: no two particles have the same one.
+pub fn is_dense(particles: &Particles) -> bool {
+    let count = particles.len();
+    particles.id.par_iter().all(|&id| (id as usize) < count)
+}
 
 /// Places of particles by ascending id.
 pub fn places(particles: &Particles) -> Vec<u32> {
@@ -58,6 +64,35 @@ pub fn components<'a>(particles: &'a Particles, name: &str) -> PyResult<Vec<&'a 
 
 pub fn unknown(name: &str) -> PyErr {
     PyAttributeError::new_err(format!("particles have no array `{name}`"))
+}
+
+/// Writes the row of each particle to the place that its id says; ids are 0 to n − 1. What is read and what
+/// is written is near what came before, since particles of neighbours have neighbouring ids.
+pub fn scatter(components: &[&[f64]], ids: &[u32], to: &mut [f64]) {
+    let width = components.len();
+    // SAFETY: both have the same size and alignment, and `to` is borrowed by this function alone.
+    let to = unsafe { std::slice::from_raw_parts(to.as_mut_ptr().cast::<AtomicU64>(), to.len()) };
+    let write = |to: &AtomicU64, x: f64| to.store(x.to_bits(), Ordering::Relaxed);
+    let blocks = ids.par_chunks(BLOCK).enumerate();
+    blocks.for_each(|(number, ids)| match components {
+        [x, y, z] => {
+            let [x, y, z] = [x, y, z].map(|c| &c[number * BLOCK..][..ids.len()]);
+            for (p, &id) in ids.iter().enumerate() {
+                let row = &to[3 * id as usize..][..3];
+                write(&row[0], x[p]);
+                write(&row[1], y[p]);
+                write(&row[2], z[p]);
+            }
+        }
+        _ => {
+            for (p, &id) in (number * BLOCK..).zip(ids) {
+                let row = &to[width * id as usize..][..width];
+                for (to, component) in row.iter().zip(components) {
+                    write(to, component[p]);
+                }
+            }
+        }
+    });
 }
 
 /// Rows of so many particles that one thread copies at a time.

@@ -2,6 +2,8 @@
 
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use moldwarp::Stop;
+use moldwarp_io::output::FileError as Failed;
+use moldwarp_io::report::ReportError;
 use moldwarp_io::run::SessionError;
 use moldwarp_io::scene::SceneError;
 use pyo3::import_exception;
@@ -49,6 +51,18 @@ pub fn session(error: &SessionError) -> PyErr {
         SessionError::Stopped(_) => StoppedError::new_err(error.to_string()),
         _ => FileError::new_err((report(error), error.to_string(), help(error))),
     }
+}
+
+pub fn report_of(error: &ReportError) -> PyErr {
+    match error {
+        ReportError::Scene(error) => scene(error),
+        _ => FileError::new_err((report(error), error.to_string(), help(error))),
+    }
+}
+
+/// A frame that could not be written.
+pub fn frame(error: Failed) -> PyErr {
+    session(&error.into())
 }
 
 pub fn stop(stop: &Stop) -> PyErr {

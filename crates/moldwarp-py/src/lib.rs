@@ -4,10 +4,12 @@
 //! of particles in and out, laws called back. What is convenience stands in `python/moldwarp`.
 
 mod arrays;
+mod copies;
 mod errors;
 mod law;
 mod lease;
 mod mesh;
+mod report;
 mod scene;
 mod simulation;
 
@@ -18,6 +20,8 @@ use pyo3::prelude::*;
 mod _moldwarp {
     #[pymodule_export]
     use super::lease::Lease;
+    #[pymodule_export]
+    use super::report::{report_in, report_of};
     #[pymodule_export]
     use super::scene::{Scene, quantity};
     #[pymodule_export]

@@ -1,5 +1,6 @@
 //! A simulation as Python sees it. The package's class of this name is made on top of it.
 
+use crate::copies::{Copies, Order};
 use crate::errors::{self, BusyError, FrozenError, StoppedError};
 use crate::law::PythonLaw;
 use crate::lease::{Held, Lease};
@@ -9,7 +10,7 @@ use moldwarp::Vec3;
 use moldwarp::measure::Energies;
 use moldwarp::particles::{Tensors, Vectors};
 use moldwarp_io::run::Session;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -29,15 +30,16 @@ pub struct Cell {
     pub held: Option<Arc<Held>>,
     laws: Vec<Arc<PythonLaw>>,
     /// Threads of its own, if it was to have a number of them.
-    threads: Option<rayon::ThreadPool>,
+    pub threads: Option<rayon::ThreadPool>,
     /// Places by id, until something changes.
     places: Option<Arc<Vec<u32>>>,
+    /// Whether ids are 0 to n − 1, until something changes.
+    dense: Option<bool>,
+    copies: Copies,
     /// Velocities at t = 0 by id, if they were assigned, until the first step.
     start: Option<Vec<f64>>,
     /// Whether stresses were assigned before the first step.
     stressed: bool,
-    /// Seconds spent in steps, and particles times steps.
-    pace: (f64, f64),
 }
 
 impl Cell {
@@ -53,7 +55,7 @@ impl Cell {
                 "the simulation has stopped and cannot go on: {reason}"
             )));
         }
-        self.places = None;
+        self.forget_order();
         if let Some(held) = self.held.take()
             && Arc::strong_count(&held) > 1
         {
@@ -61,6 +63,18 @@ impl Cell {
             held.keep(self.session.simulation_mut().take_particles());
         }
         Ok(())
+    }
+
+    fn forget_order(&mut self) {
+        self.places = None;
+        self.dense = None;
+    }
+
+    fn is_dense(&mut self) -> bool {
+        let particles = self.session.simulation().particles();
+        *self
+            .dense
+            .get_or_insert_with(|| arrays::is_dense(particles))
     }
 
     fn places(&mut self) -> Arc<Vec<u32>> {
@@ -79,17 +93,16 @@ impl Cell {
         // A time that is a sum of steps may miss the wanted one by round-off.
         let reached = |session: &Session| session.simulation().time() >= time * (1.0 - 1e-12);
         while done < steps && !self.session.simulation().finished() && !reached(&self.session) {
-            let particles = self.session.simulation().particles().len();
-            let stepped = self.session.step();
-            self.pace.1 += particles as f64;
-            stepped?;
+            self.session.step()?;
             done += 1;
             let interrupted = |law: &Arc<PythonLaw>| law.was_interrupted();
-            if begun.elapsed() >= budget || self.laws.iter().any(interrupted) {
+            if begun.elapsed() >= budget
+                || self.laws.iter().any(interrupted)
+                || self.session.has_lost_a_frame()
+            {
                 break;
             }
         }
-        self.pace.0 += begun.elapsed().as_secs_f64();
         Ok(done)
     }
 
@@ -106,13 +119,19 @@ impl Cell {
             .session
             .simulation_mut()
             .begin_with(&velocity, &stress, stressed);
-        self.places = None;
+        self.forget_order();
         if let Err(stop) = begun {
             self.session.stop(&stop);
             return Err(errors::stop(&stop));
         }
         self.session.record_again();
-        Ok(())
+        self.lost_frame()
+    }
+
+    /// Raises what has kept a frame from being written.
+    fn lost_frame(&mut self) -> PyResult<()> {
+        let lost = self.session.lost_frame();
+        lost.map_or(Ok(()), |error| Err(errors::frame(error)))
     }
 }
 
@@ -155,7 +174,7 @@ fn pool(threads: Option<usize>) -> PyResult<Option<rayon::ThreadPool>> {
 }
 
 /// With threads of its own, or with those of all.
-fn within<T: Send>(threads: &Option<rayon::ThreadPool>, f: impl FnOnce() -> T + Send) -> T {
+pub fn within<T: Send>(threads: &Option<rayon::ThreadPool>, f: impl FnOnce() -> T + Send) -> T {
     match threads {
         Some(threads) => threads.install(f),
         None => f(),
@@ -171,9 +190,10 @@ impl Simulation {
             laws: laws.0.iter().map(|law| law.1.clone()).collect(),
             threads,
             places: None,
+            dense: None,
+            copies: Copies::default(),
             start: None,
             stressed: false,
-            pace: (0.0, 0.0),
         };
         Simulation {
             cell: Mutex::new(cell),
@@ -238,6 +258,14 @@ impl Simulation {
             .map_err(|error| errors::session(&error))
     }
 
+    /// Keeps frames in an empty folder from now on.
+    fn keep_frames(&self, py: Python, folder: PathBuf) -> PyResult<()> {
+        let mut cell = self.look()?;
+        let session = &mut cell.session;
+        py.detach(|| session.keep_frames(&folder))
+            .map_err(errors::frame)
+    }
+
     /// At most `steps` steps, up to the first at or after `time` (s), for about `budget` seconds of wall
     /// time. Python's lock is released meanwhile.
     fn advance(&self, py: Python, steps: u64, time: f64, budget: f64) -> PyResult<u64> {
@@ -251,7 +279,7 @@ impl Simulation {
         let interrupted = cell.laws.iter().filter(|law| law.interrupted()).count() > 0;
         match done {
             Ok(_) if interrupted => Err(PyKeyboardInterrupt::new_err(())),
-            Ok(done) => Ok(done),
+            Ok(done) => cell.lost_frame().map(|()| done),
             Err(stop) => {
                 let error = errors::stop(&stop);
                 if let Some(raised) = raised.into_iter().next() {
@@ -272,20 +300,26 @@ impl Simulation {
     fn array<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let mut cell = self.look()?;
         let count = cell.session.simulation().particles().len();
-        if name == "velocity" && cell.session.simulation().steps() == 0 {
-            if let Some(rows) = &cell.start {
-                return Ok(PyArray1::from_slice(py, rows)
-                    .reshape([count, 3])?
-                    .into_any());
-            }
-            let velocity = cell.session.simulation().velocities_at_the_start();
-            let places = cell.places();
-            return gathered(py, &velocity.components(), &places);
+        let at_start = name == "velocity" && cell.session.simulation().steps() == 0;
+        if let Some(rows) = cell.start.as_ref().filter(|_| at_start) {
+            return Ok(PyArray1::from_slice(py, rows)
+                .reshape([count, 3])?
+                .into_any());
         }
         let own = &mut *cell;
-        let places = py.detach(|| own.places());
-        let particles = cell.session.simulation().particles();
-        gathered(py, &arrays::components(particles, name)?, &places)
+        let dense = py.detach(|| own.is_dense());
+        let places = (!dense).then(|| py.detach(|| own.places()));
+        let particles = own.session.simulation().particles();
+        let order = match &places {
+            Some(places) => Order::Places(places),
+            None => Order::Ids(&particles.id),
+        };
+        let started = at_start.then(|| own.session.simulation().velocities_at_the_start());
+        let components = match &started {
+            Some(velocity) => velocity.components().to_vec(),
+            None => arrays::components(particles, name)?,
+        };
+        own.copies.copy(py, &components, order, &own.threads)
     }
 
     /// `id`, `body` or `element` of particles, by id.
@@ -481,9 +515,7 @@ impl Simulation {
     /// Particles times steps per second of stepping.
     #[getter]
     fn rate(&self) -> PyResult<f64> {
-        let cell = self.look()?;
-        let (seconds, steps) = cell.pace;
-        Ok(if seconds > 0.0 { steps / seconds } else { 0.0 })
+        Ok(self.look()?.session.rate())
     }
 }
 
@@ -492,27 +524,4 @@ fn vectors(rows: &[f64], places: &[u32]) -> Vectors {
     (0..places.len())
         .map(|p| Vec3::new(x[p], y[p], z[p]))
         .collect()
-}
-
-/// Rows by id: a copy that belongs to Python.
-fn gathered<'py>(
-    py: Python<'py>,
-    components: &[&[f64]],
-    places: &[u32],
-) -> PyResult<Bound<'py, PyAny>> {
-    let (count, width) = (places.len(), components.len());
-    // SAFETY: all of it is written below, before anybody else has it.
-    let array = unsafe { PyArray2::<f64>::new(py, [count, width], false) };
-    {
-        // SAFETY: it is new, contiguous and nobody else's.
-        let all = unsafe { array.as_slice_mut()? };
-        py.detach(|| arrays::gather(components, places, all));
-    }
-    let array = match width {
-        1 => array.reshape([count])?.into_any(),
-        _ => array.into_any(),
-    };
-    // What is written to a copy would be lost without a word.
-    array.call_method1("setflags", (false,))?;
-    Ok(array)
 }

@@ -48,6 +48,8 @@ def test_notebook(name: str) -> None:
             cell.source = COARSE[name]
     client = nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(NOTEBOOKS)}})
     client.execute()
+    for page in NOTEBOOKS.glob("*.html"):
+        page.unlink()
     pictures = [o for cell in notebook.cells for o in cell.get("outputs", []) if "image/png" in o.get("data", {})]
     assert pictures
     kept = os.environ.get("MOLDWARP_PICTURES")

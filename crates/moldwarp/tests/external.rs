@@ -202,3 +202,19 @@ fn a_law_that_fails_stops_the_run() {
         );
     }
 }
+
+/// Only the main thread of a Python program hears Ctrl-C.
+#[test]
+fn a_law_is_asked_by_the_thread_that_makes_the_step() {
+    let asked = || format!("{:?}", std::thread::current().id());
+    let law = Arc::new(Wrong {
+        says: || Err(format!("{:?}", std::thread::current().id())),
+    });
+    let own = Material::External(External {
+        elastic: ELASTIC,
+        law,
+    });
+    let mut sim = Simulation::new(fall(own, clay())).unwrap();
+    let failed = sim.step().unwrap_err();
+    assert!(matches!(&failed, Stop::Law { problem, .. } if *problem == asked()));
+}

@@ -412,6 +412,9 @@ pub fn verdict(source: &Source) -> Verdict {
     let done = exit == "done";
     let ended = match done {
         true => format!("The run was completed, up to t = {time}."),
+        false if !source.is_over() => {
+            format!("The simulation is not over: this is how it stands at t = {time}.")
+        }
         false => format!("The run was stopped at t = {time}: {}.", escape(exit)),
     };
     let (grade, trust) = if lost > 0.0 || !closes {
@@ -429,6 +432,9 @@ pub fn verdict(source: &Source) -> Verdict {
                      terms are within their limit, no particle is lost. Whether the mesh is fine enough, only a \
                      finer one tells.";
         (Grade::Good, trust.to_owned())
+    } else if !source.is_over() {
+        let trust = "Nothing that moldwarp checks speaks against its results so far.";
+        (Grade::Unfinished, trust.to_owned())
     } else {
         (
             Grade::Doubt,

@@ -1,6 +1,6 @@
 //! The report of a run: one page that opens in any browser, with all that it shows inside.
 //!
-//! It is made from a run's folder alone. Rust reads, judges and packs; what moves in the page is the
+//! It is made from a run's folder alone, or from a [`Session`]. Rust reads, judges and packs; what moves in the page is the
 //! script `viewer.js`, built from `viewer/` and committed, so that nothing but Rust is needed here.
 
 mod answers;
@@ -24,7 +24,9 @@ pub use budget::Wishes;
 use crate::output::csv::CsvError;
 use crate::output::vtu_read::VtuError;
 use crate::output::{FileError, Folder, write_whole};
+use crate::run::Session;
 use crate::scene::SceneError;
+use source::Source;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -56,10 +58,10 @@ pub enum ReportError {
     #[diagnostic(help("it has been changed or damaged since the run; make the run again"))]
     Broken { path: PathBuf, problem: String },
     #[error("{} is there already, and is no report", .0.display())]
-    #[diagnostic(help("name another file with `--to`, or remove it"))]
+    #[diagnostic(help("name another file (`--to`), or remove it"))]
     Foreign(PathBuf),
     #[error("{} is a folder", .0.display())]
-    #[diagnostic(help("name a file with `--to`, such as report.html"))]
+    #[diagnostic(help("name a file (`--to`), such as report.html"))]
     Folder(PathBuf),
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -82,9 +84,30 @@ pub enum ReportError {
 /// Nothing is changed then.
 pub fn report(folder: &Path, to: Option<&Path>, wishes: Wishes) -> Result<Written, ReportError> {
     let path = to.map_or_else(|| Folder::resume(folder).report(), Path::to_owned);
-    let source = source::Source::read(folder)?;
+    write(&Source::read(folder)?, path, wishes)
+}
+
+/// Writes the report of a simulation in memory, computed with so many threads, as it stands, to `to`. Files
+/// that are needed on the way go into `work`, a folder that is there and empty.
+///
+/// # Errors
+///
+/// If these files or the page cannot be written.
+pub fn report_of(
+    session: &Session,
+    threads: usize,
+    work: &Path,
+    to: &Path,
+    wishes: Wishes,
+) -> Result<Written, ReportError> {
+    // What is seen soon is told soon.
+    may_be_written(to)?;
+    write(&Source::of(session, threads, work)?, to.to_owned(), wishes)
+}
+
+fn write(source: &Source, path: PathBuf, wishes: Wishes) -> Result<Written, ReportError> {
     may_be_written(&path)?;
-    let (page, left_out) = page::page(&source, wishes)?;
+    let (page, left_out) = page::page(source, wishes)?;
     write_whole(&path, |out| out.write_all(page.as_bytes()))?;
     Ok(Written {
         path,

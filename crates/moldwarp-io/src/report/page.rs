@@ -21,6 +21,7 @@ const MOST_OF_HISTORY: usize = MOST_BYTES / 3;
 pub fn page(source: &Source, wishes: Wishes) -> Result<(String, Vec<String>), ReportError> {
     let survey = Survey::of(source)?;
     let (history, mut left_out) = history(source);
+    left_out.extend_from_slice(&source.left_out);
     let mut about = json!({
         "case": source.summary.as_ref().map_or(&Value::Null, |s| &s["case"]),
         "up": up(source.outline.gravity),

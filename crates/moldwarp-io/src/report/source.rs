@@ -1,9 +1,11 @@
-//! A run's folder as it is read for a report. Nothing but the folder is needed.
+//! A run's folder as it is read for a report, of which nothing but the folder is needed; or a session.
 
 use super::ReportError;
 use crate::output::csv::{self, Table};
 use crate::output::{FileError, Folder};
+use crate::run::{Framed, GOING_ON, Session};
 use crate::scene::Outline;
+use crate::text::number;
 use moldwarp::plan::Quantity;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -25,6 +27,8 @@ pub struct Source {
     pub particles: Vec<(f64, PathBuf)>,
     /// The same of the mesh.
     pub mesh: Vec<(f64, PathBuf)>,
+    /// What the frames do not show, a sentence each.
+    pub left_out: Vec<String>,
 }
 
 impl Source {
@@ -57,7 +61,43 @@ impl Source {
             history,
             particles: collection(&folder, "particles")?,
             mesh: collection(&folder, "mesh")?,
+            left_out: Vec::new(),
         })
+    }
+
+    /// A session as it stands, computed with so many threads. What is read again from files is written into
+    /// `work`.
+    pub fn of(session: &Session, threads: usize, work: &Path) -> Result<Source, ReportError> {
+        let paths = ["scene.toml", "summary.json", "history.csv"].map(|name| work.join(name));
+        let [scene_path, summary_path, history_path] = &paths;
+        session.summary(threads).write(summary_path)?;
+        session.write_history(history_path)?;
+        let summary_text = read(summary_path)?;
+        let (history_text, history) = history(history_path)?;
+        let frames = session.frames(work)?;
+        let of_kind = |kind: usize| {
+            let frames = frames.iter();
+            frames
+                .map(|(time, paths)| (*time, paths[kind].clone()))
+                .collect()
+        };
+        Ok(Source {
+            scene: session.text().to_owned(),
+            outline: Outline::read(session.text(), scene_path)?,
+            summary: Some(parse(&summary_text, summary_path)?),
+            summary_text,
+            history_text,
+            history,
+            particles: of_kind(0),
+            mesh: of_kind(1),
+            left_out: not_kept(&frames),
+        })
+    }
+
+    /// Whether it has ended, in whatever way.
+    pub fn is_over(&self) -> bool {
+        let summary = self.summary.as_ref();
+        summary.is_some_and(|summary| summary["exit"] != GOING_ON)
     }
 
     /// The unit of a column of the history; empty if it has none or is not known.
@@ -71,6 +111,21 @@ impl Source {
             None => unit_by_name(column).to_owned(),
         }
     }
+}
+
+/// What frames of a session do not show, a sentence or none.
+fn not_kept(frames: &[Framed]) -> Vec<String> {
+    let time = frames.first().map_or(0.0, |frame| frame.0);
+    let sentence = match frames.len() {
+        _ if time == 0.0 => return Vec::new(),
+        1 => {
+            "The 3D view shows the last state alone, since no frames were kept; answers from frames are of it, too."
+        }
+        _ => {
+            "The 3D view begins at t = {}, since no frames were kept before; answers from frames do, too."
+        }
+    };
+    vec![sentence.replace("{}", &format!("{} s", number(time)))]
 }
 
 /// For runs that are not over, whose units nothing tells yet.

@@ -170,7 +170,7 @@ pub fn stages(source: &Source) -> String {
         let state = match reached {
             Some(reached) if number < reached => "completed",
             Some(reached) if number == reached && done => "completed",
-            Some(reached) if number == reached && source.summary.is_some() => "stopped",
+            Some(reached) if number == reached && source.is_over() => "stopped",
             Some(reached) if number == reached => "not over",
             Some(_) => "not reached",
             None => "–",

@@ -1,7 +1,9 @@
 //! Reports of small runs, read back.
 
+mod of_session;
+
 use super::packing::tests::{unpacked, value};
-use super::{ReportError, Wishes, report};
+use super::{ReportError, Wishes, Written, report};
 use crate::output::{csv, vtu_read};
 use crate::run::{RunOptions, run};
 use crate::scene;
@@ -76,13 +78,7 @@ impl Bench {
     }
 
     fn report(&self, wishes: Wishes) -> Page {
-        let written = report(&self.out(), None, wishes).unwrap_or_else(|e| panic!("{e}"));
-        let html = std::fs::read_to_string(&written.path).unwrap();
-        assert_eq!(html.len(), written.bytes);
-        Page {
-            html,
-            left_out: written.left_out,
-        }
+        Page::of(report(&self.out(), None, wishes).unwrap_or_else(|e| panic!("{e}")))
     }
 
     fn wrong(&self) -> String {
@@ -99,6 +95,15 @@ struct Page {
 }
 
 impl Page {
+    fn of(written: Written) -> Page {
+        let html = std::fs::read_to_string(&written.path).unwrap();
+        assert_eq!(html.len(), written.bytes);
+        Page {
+            html,
+            left_out: written.left_out,
+        }
+    }
+
     /// What stands in a script element.
     fn data(&self, id: &str) -> &str {
         let (_, rest) = self.html.split_once(&format!(" id=\"{id}\">")).expect(id);

@@ -65,12 +65,11 @@ impl Frames {
         let number = self.len();
         let particles = Folder::frame("particles", number);
         let mesh = Folder::frame("mesh", number);
-        let [of_particles, of_mesh] = [&particles, &mesh].map(|f| self.folder.path().join(f));
-        write_particles(sim, time, &of_particles, &[], &[])?;
+        let paths = [&particles, &mesh].map(|f| self.folder.path().join(f));
+        write_frame(sim, time, &paths)?;
         self.particles.add(time, &particles)?;
-        write_mesh(sim, time, &of_mesh)?;
         self.mesh.add(time, &mesh)?;
-        self.fresh.extend([of_particles, of_mesh]);
+        self.fresh.extend(paths);
         Ok(())
     }
 
@@ -83,6 +82,16 @@ impl Frames {
         self.fresh.extend(collections);
         self.fresh.drain(..).try_for_each(|path| sync(&path))
     }
+}
+
+/// Writes the simulation as it is now, at `time`, s: the files of particles and mesh.
+pub(super) fn write_frame(
+    sim: &Simulation,
+    time: f64,
+    [particles, mesh]: &[PathBuf; 2],
+) -> Result<(), FileError> {
+    write_particles(sim, time, particles, &[], &[])?;
+    write_mesh(sim, time, mesh)
 }
 
 /// An array of the frames. The book's page on the output is made from these, too.

@@ -185,6 +185,12 @@ impl Expected {
         pair.collect()
     }
 
+    /// Takes a history's columns for all that there is to compare.
+    pub fn see(&mut self, columns: &[Vec<f64>]) {
+        let (times, values) = (&columns[0], &columns[self.column]);
+        self.seen = times.iter().copied().zip(values.iter().copied()).collect();
+    }
+
     /// How far the history was from what was expected; a problem as a sentence.
     pub fn compared(&self) -> Result<Compared, String> {
         let d = difference(self.seen.iter().copied(), &self.reference)
@@ -234,8 +240,7 @@ impl History {
         if !expected.is_empty() {
             let rows = csv::read(&path)?;
             for expected in &mut expected {
-                let (times, values) = (&rows.columns[0], &rows.columns[expected.column]);
-                expected.seen = times.iter().copied().zip(values.iter().copied()).collect();
+                expected.see(&rows.columns);
             }
         }
         Ok(History {

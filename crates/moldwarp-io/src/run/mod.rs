@@ -28,6 +28,7 @@ pub(crate) use frames::{frame_bytes, unit as unit_of_field};
 #[cfg(test)]
 pub(crate) use history::FIRST;
 pub(crate) use history::{Expected, columns, unit as unit_of_column};
+pub(crate) use session::{Framed, GOING_ON};
 pub(crate) use stage_files::StageFile;
 pub(crate) use steps::end_time;
 pub(crate) use warnings::{NUMERICAL, RESIDUAL};

@@ -1,17 +1,26 @@
 //! A simulation in memory: whoever holds it steps it and looks at it, and nothing is written unless
 //! it is asked for. Its history has the columns, and the rows, that a run of the command writes.
 
+mod account;
+mod reel;
+
+pub(crate) use account::GOING_ON;
+pub(crate) use reel::Framed;
+
 use super::checkpoint::CheckpointError;
-use super::history::{columns, row};
+use super::history::{Expected, columns, row};
 use super::schedule::Schedule;
+use super::steps::Pace;
 use super::{recorder, simulation, state_hash, steps, whole};
 use crate::output::container::{self, Damage};
 use crate::output::{FileError, hash};
-use crate::scene::{Given, Kept, OutputSettings, Scene, SceneError, kept};
+use crate::scene::{Compare, Every, Given, Kept, OutputSettings, Scene, SceneError, kept};
 use moldwarp::measure::Energies;
 use moldwarp::saved::{Broken, Section, load};
 use moldwarp::{Plan, Simulation, Stop, Vec3};
+use reel::Reel;
 use std::path::Path;
+use std::time::Instant;
 
 /// What was known at the beginning and is needed to make the plan again.
 #[derive(Clone, Debug)]
@@ -19,17 +28,23 @@ struct Origin {
     version: String,
     case: String,
     text: String,
+    /// `OUT@STAGE`, if bodies are as an earlier run left them.
+    from: Option<String>,
     scene_hash: String,
     /// Nodes of the mesh, m.
     nodes: Vec<Vec3>,
+    /// What comparisons are made with: names of files, times and values.
+    references: Vec<(String, Vec<(f64, f64)>)>,
 }
 
 moldwarp::saved!(Origin {
     version,
     case,
     text,
+    from,
     scene_hash,
     nodes,
+    references,
 });
 
 /// Rows of a history, one array a column.
@@ -56,6 +71,11 @@ pub struct Session {
     columns: Vec<(String, String)>,
     rows: Rows,
     row: Vec<f64>,
+    pace: Pace,
+    compare: Vec<Compare>,
+    /// How often the scene wants frames.
+    frames: Every,
+    reel: Option<Reel>,
     notes: Vec<String>,
     /// Why it cannot go on.
     stopped: Option<String>,
@@ -90,18 +110,34 @@ impl Session {
             nodes: scene.plan.mesh.nodes.clone(),
             case: scene.case,
             text: String::new(),
+            from: scene.earlier.map(|earlier| earlier.given),
+            references: Vec::new(),
         };
         let sim = simulation(scene.plan, &scene.origin, &scene.text)?;
         origin.text = scene.text;
-        let mut session = Session::of(sim, origin, scene.notes);
+        let about = (scene.compare, scene.output.frames, scene.notes);
+        let mut session = Session::of(sim, origin, about);
+        match Expected::read_all(&session.compare, &session.columns) {
+            Ok(expected) => session.origin.references = Expected::references(&expected),
+            // Only a report needs them.
+            Err(error) => session.notes.push(format!("nothing is compared: {error}")),
+        }
         session.rows.schedule = recorder::schedule(scene.output.history, session.end());
         session.record();
         Ok(session)
     }
 
-    fn of(sim: Simulation, origin: Origin, notes: Vec<String>) -> Session {
+    fn of(
+        sim: Simulation,
+        origin: Origin,
+        (compare, frames, notes): (Vec<Compare>, Every, Vec<String>),
+    ) -> Session {
         let columns = columns(&sim);
         Session {
+            pace: Pace::default(),
+            compare,
+            frames,
+            reel: None,
             rows: Rows {
                 columns: vec![Vec::new(); columns.len()],
                 ..Rows::default()
@@ -121,6 +157,9 @@ impl Session {
 
     /// The simulation, to change it between steps.
     pub fn simulation_mut(&mut self) -> &mut Simulation {
+        if let Some(reel) = &mut self.reel {
+            reel.was_changed();
+        }
         &mut self.sim
     }
 
@@ -134,16 +173,38 @@ impl Session {
         self.stopped.as_deref()
     }
 
-    /// One step, and the row that is due after it.
+    /// One step, and the row and the frame that are due after it.
     ///
     /// # Errors
     ///
     /// What a guard has found. Nothing can be computed after that.
     pub fn step(&mut self) -> Result<(), Stop> {
+        let (begun, particles) = (Instant::now(), self.sim.particles().len());
+        let (time, dt) = (self.sim.time(), self.sim.next_time_step());
         let stepped = self.sim.step();
         match &stepped {
-            Ok(()) => self.record(),
-            Err(stop) => self.stop(stop),
+            Ok(()) => {
+                self.pace
+                    .add(begun.elapsed(), particles, self.sim.time_step());
+                self.record();
+                if let Some(reel) = &mut self.reel {
+                    reel.record(&self.sim);
+                }
+            }
+            Err(stop) => {
+                self.stop(stop);
+                // Where the clock has not gone on, positions and stresses have.
+                let now = self.sim.time();
+                let not_at_rest = matches!(stop, Stop::NotAtRest { .. });
+                let now = if now > time || not_at_rest {
+                    now
+                } else {
+                    time + dt
+                };
+                if let Some(reel) = &mut self.reel {
+                    reel.record_last(&self.sim, now);
+                }
+            }
         }
         stepped
     }
@@ -177,6 +238,9 @@ impl Session {
         self.rows.last = None;
         self.rows.columns.iter_mut().for_each(Vec::clear);
         self.record_now();
+        if let Some(reel) = &mut self.reel {
+            reel.record_again(&self.sim);
+        }
     }
 
     /// The history so far: name, unit and values of each column.
@@ -238,6 +302,7 @@ impl Session {
             sections.add_pieces("session", &Section::new(&self.origin))?;
             sections.add_pieces("mesh", &Section::new(self.sim.mesh()))?;
             sections.add_pieces("history", &Section::new(&self.rows))?;
+            sections.add_pieces("pace", &Section::new(&self.pace))?;
             self.sim.save(|name, part| sections.add_pieces(name, &part))
         })?;
         Ok(())
@@ -281,7 +346,9 @@ impl Session {
         };
         let (scene, _): (Scene, OutputSettings) = kept(of_session, path, &[], 0)?;
         let sim = restored(scene.plan, find).map_err(broken)?;
-        let mut session = Session::of(sim, origin, scene.notes);
+        let about = (scene.compare, scene.output.frames, scene.notes);
+        let mut session = Session::of(sim, origin, about);
+        session.pace = load(find("pace").unwrap_or_default()).map_err(broken)?;
         let rows: Rows = load(find("history").unwrap_or_default()).map_err(broken)?;
         if rows.columns.len() != session.columns.len() {
             return Err(broken(Broken::new("history")));

@@ -27,7 +27,8 @@ pub(super) enum Ended {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pace {
     particle_steps: f64,
-    seconds: f64,
+    /// Wall time of the steps.
+    pub seconds: f64,
     /// Least and greatest step, s.
     pub bounds: Option<[f64; 2]>,
 }
@@ -39,7 +40,7 @@ moldwarp::saved!(Pace {
 });
 
 impl Pace {
-    fn add(&mut self, spent: Duration, particles: usize, time_step: f64) {
+    pub fn add(&mut self, spent: Duration, particles: usize, time_step: f64) {
         self.particle_steps += particles as f64;
         self.seconds += spent.as_secs_f64();
         let [low, high] = self.bounds.unwrap_or([time_step; 2]);

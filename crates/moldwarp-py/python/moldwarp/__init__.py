@@ -26,6 +26,7 @@ from ._material import Increment, Material, Update
 from ._mesh import Mesh
 from ._moldwarp import VERSION as __version__
 from ._particles import Nodes, Particles
+from ._report import Report, report
 from ._scene import Scene
 from ._simulation import Simulation
 from ._views import Columns, Frozen, View
@@ -44,6 +45,7 @@ __all__ = [
     "Nodes",
     "NotAtRestError",
     "Particles",
+    "Report",
     "Scene",
     "SceneError",
     "Simulation",
@@ -51,4 +53,5 @@ __all__ = [
     "Update",
     "View",
     "__version__",
+    "report",
 ]

@@ -1,16 +1,19 @@
 """The compiled part of moldwarp."""
 
 import os
+from pathlib import Path
 from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Lease", "Scene", "Simulation", "VERSION", "quantity"]
+__all__ = ["Lease", "Scene", "Simulation", "VERSION", "quantity", "report_in", "report_of"]
 
 _Floats = npt.NDArray[np.float64]
 _Ints = npt.NDArray[np.int64]
 _Mesh = tuple[_Floats, _Ints, list[tuple[str, _Ints]], list[tuple[str, _Ints]]]
+_Report = tuple[Path, int, list[str]]
+_Wishes = tuple[int | None, int | None]
 _Law = tuple[str, object, list[tuple[str, str]]]
 
 VERSION: str
@@ -64,6 +67,7 @@ class Simulation:
     @staticmethod
     def load(path: str | os.PathLike[str], laws: list[_Law], threads: int | None) -> Simulation: ...
     def save(self, path: str | os.PathLike[str]) -> None: ...
+    def keep_frames(self, folder: str) -> None: ...
     def advance(self, steps: int, time: float, budget: float) -> int: ...
     def freeze(self) -> Lease: ...
     def array(self, name: str) -> _Floats: ...
@@ -71,3 +75,9 @@ class Simulation:
     def assign(self, name: str, values: _Floats) -> None: ...
 
 def quantity(text: str, dimension: str) -> float: ...
+def report_of(
+    simulation: Simulation, work: str, to: str | os.PathLike[str], wishes: _Wishes, /
+) -> _Report: ...
+def report_in(
+    folder: str | os.PathLike[str], to: str | os.PathLike[str] | None, wishes: _Wishes, /
+) -> _Report: ...

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import tempfile
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -15,6 +16,7 @@ from ._material import Material
 from ._mesh import Mesh
 from ._particles import Nodes, Particles
 from ._progress import Bar
+from ._report import Report, wishes
 from ._scene import Scene, laws, of_arrays, to_scene
 from ._views import Frozen
 
@@ -34,6 +36,10 @@ class Simulation:
     threads
         Threads of its own; without it, it shares those of all simulations, one a core. For many simulations at
         a time give each one thread. Results are the same bit for bit.
+    keep_frames
+        Whether to keep frames for :meth:`report`, as often as the scene's ``output`` asks for them, in a temporary
+        folder that goes with the simulation. Each has about 200 bytes a particle; the environment's ``TMPDIR`` says
+        where the folder is made.
 
     Raises
     ------
@@ -46,10 +52,12 @@ class Simulation:
         scene: Scene | str | os.PathLike[str] | Mapping[str, Any],
         *,
         threads: int | None = None,
+        keep_frames: bool = False,
     ) -> None:
         scene = to_scene(scene)
         self._simulation = _moldwarp.Simulation(scene._scene, _threads(threads))
         self._title = scene.title
+        self._keep_frames(keep_frames)
 
     @classmethod
     def load(
@@ -58,15 +66,23 @@ class Simulation:
         *,
         materials: Mapping[str, Material] | None = None,
         threads: int | None = None,
+        keep_frames: bool = False,
     ) -> Simulation:
         """What :meth:`save` has written; it goes on bit for bit.
 
-        ``materials`` are those written in Python, by name: the file does not hold their code.
+        ``materials`` are those written in Python, by name: the file does not hold their code, nor frames.
         """
         simulation = cls.__new__(cls)
         simulation._simulation = _moldwarp.Simulation.load(path, laws(materials or {}), _threads(threads))
         simulation._title = simulation._simulation.case
+        simulation._keep_frames(keep_frames)
         return simulation
+
+    def _keep_frames(self, wanted: bool) -> None:
+        # The folder goes with the last reference to it.
+        self._frames = tempfile.TemporaryDirectory(prefix="moldwarp-") if wanted else None
+        if self._frames is not None:
+            self._simulation.keep_frames(self._frames.name)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the whole state with its history into a file, which is for this version of moldwarp."""
@@ -110,6 +126,8 @@ class Simulation:
         ------
         StoppedError
             If a guard stops it.
+        FileError
+            If a frame that is to be kept cannot be written. It can go on, without that frame.
         """
         time = math.inf if until is None else _time(until)
         if time < self.time:
@@ -258,6 +276,33 @@ class Simulation:
     def state_hash(self) -> str:
         """Fingerprint of the state: two simulations are the same, bit for bit, when it is the same."""
         return self._simulation.state_hash
+
+    def report(
+        self,
+        path: str | os.PathLike[str] = "report.html",
+        *,
+        particles: int | None = None,
+        frames: int | None = None,
+    ) -> Report:
+        """Writes the report of the simulation as it stands: one page that opens in any browser, without a network.
+
+        It is the page that ``moldwarp report`` makes of a run: answers, curves of the history, the energy ledger,
+        tables, and the ground in 3D, in its present state, and over time with ``keep_frames=True``.
+
+        Parameters
+        ----------
+        path
+            Where it goes. A report that is there is replaced, another file is not.
+        particles, frames
+            How many are drawn at most.
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+        """
+        with tempfile.TemporaryDirectory(prefix="moldwarp-") as work:
+            return Report(*_moldwarp.report_of(self._simulation, work, path, wishes(particles, frames)))
 
     def to_pyvista(self) -> Any:
         """The particles as a ``pyvista.PolyData`` with the fields of the command's frames, by id."""

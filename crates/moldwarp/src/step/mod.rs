@@ -16,7 +16,8 @@
 //! | | 2 nodes: a_i = F_i / m_i, damping, boundaries | `nodes`, `correction` |
 //! | | 3 nodes to particles: v_p += h Σ N_i a_i | `to_particles` |
 //!
-//! Stages 6, 7 and, in a mesh that stays, the sums of stage 1 are one pass over particles, `points`.
+//! What particles receive in stage 3, stages 6 and 7 and, in a mesh that stays, the sums of stage 1 are one pass over
+//! particles in the drift, `points`; the kick goes through nodes and cells only.
 //!
 //! Jassim et al. Eq. 5–9 are the same cycle cut before stage 1; with equal steps the numbers are
 //! theirs but for the first kick, which is half as long: a load that acts from t = 0 then acts

@@ -300,6 +300,7 @@ mod tests {
         assert_eq!(corner(&corners, 9, 2), expected);
     }
 
+    /// Each set of instructions says so in words of its own.
     #[test]
     #[should_panic]
     fn nodes_of_others_are_not_given_anything() {

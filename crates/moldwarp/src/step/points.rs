@@ -1,7 +1,7 @@
 //! The pass over particles: what they are still to receive of the last kick, what a drift does to them, and in a mesh that
 //! stays the sums over those of each cell, with which the next kick begins.
 //!
-//! One pass in place of three, since a particle's numbers come from memory: that takes longer than to compute with
+//! One pass in place of four, since a particle's numbers come from memory, which takes about as long as to compute with
 //! them.
 
 use super::collect::Shares;
@@ -9,9 +9,8 @@ use super::motion::{self, Crossing, Motion, Search, go_along};
 use super::state::Summed;
 use super::strain::own_work;
 use super::stress::{Arrays as Stressed, Stresses};
-use super::sums::{Asked, Counted, Records, Sums};
+use super::sums::{Arrays as SumArrays, Asked, Counted, Records, Sums};
 use super::to_particles::{Before, Given, Kick};
-use super::{CellPairs, CellStress, CellSums};
 use crate::lanes::{self, ByTile, Lane, load, prefetch, prefetch_bodies, prefetch_record, store};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
@@ -80,11 +79,6 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     type Arrays<'a> = (Stressed<'a>, (Vectors<'a>, Vectors<'a>), &'a mut [u32]);
     let vectors = (position.components_mut(), velocity.components_mut());
     let arrays: Arrays = (stressed, vectors, &mut element[..]);
-    type Cells<'a> = (
-        &'a mut [CellSums],
-        &'a mut [CellPairs],
-        &'a mut [CellStress],
-    );
     let records = (
         &mut cells.sums[..],
         &mut cells.pairs[..],
@@ -93,7 +87,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     let (shapes, strains) = (&cells.shapes[..], &cells.strains[..]);
     let cut = cells.portions.cut();
     let all = ByTile::new(&active.tiles, arrays, (records, cells.portions.shares()));
-    let work = |block: ByTile<Arrays, (Cells, Shares<2>)>| {
+    let work = |block: ByTile<Arrays, (SumArrays, Shares<2>)>| {
         let first = block.first();
         let tiles = block.each();
         let (mut stressed, (mut position, mut velocity), elements) = block.particles;

@@ -46,6 +46,13 @@ impl Default for Sums {
     }
 }
 
+/// The records of tiles.
+pub(super) type Arrays<'a> = (
+    &'a mut [CellSums],
+    &'a mut [CellPairs],
+    &'a mut [CellStress],
+);
+
 /// The records of a tile.
 pub(super) struct Records<'a> {
     pub sum: &'a mut CellSums,
@@ -286,11 +293,6 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
         reference: reference.as_ref(),
         simd: *simd,
     };
-    type Arrays<'a> = (
-        &'a mut [CellSums],
-        &'a mut [CellPairs],
-        &'a mut [CellStress],
-    );
     let arrays = (
         &mut cells.sums[..],
         &mut cells.pairs[..],

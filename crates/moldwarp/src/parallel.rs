@@ -83,6 +83,16 @@ impl<A: Split, B: Split, C: Split> Split for (A, B, C) {
     }
 }
 
+/// Something that there may be; it does not say how many.
+impl<S: Split> Split for Option<S> {
+    fn count(&self) -> usize {
+        self.as_ref().map_or(0, S::count)
+    }
+    fn split(self, at: usize) -> (Self, Self) {
+        self.map(|some| some.split(at)).unzip()
+    }
+}
+
 impl Split for () {
     fn count(&self) -> usize {
         0

@@ -225,24 +225,29 @@ impl Simulation {
     fn take_kick(&mut self, nodes: Vec<Node>, kick: Cells) -> Result<(), Broken> {
         let count = self.active.tiles.len();
         check("nodes", nodes.len() == self.active.nodes.len())?;
+        let all_or_none = |kept: usize| kept == count || kept == 0;
         check("cells", kick.sums.len() == count)?;
-        check("cells", kick.pairs.len() == count)?;
-        check("cells", kick.stresses.len() == count)?;
-        check("cells", kick.forces.len() == count)?;
+        check("cells", kick.fills.len() == count)?;
+        check("cells", all_or_none(kick.medium.len()))?;
+        check("cells", all_or_none(kick.forces.len()))?;
+        let pairs = self.cells.mass.values.len();
+        check("pairs of nodes", kick.mass.values.len() == pairs)?;
         self.shared.renew(&nodes);
         self.nodes = nodes;
         // The others have their sizes from the numbering.
         let Cells {
             sums,
-            pairs,
-            stresses,
+            medium,
+            fills,
             forces,
+            mass,
             ..
         } = kick;
         self.cells.sums = sums;
-        self.cells.pairs = pairs;
-        self.cells.stresses = stresses;
+        self.cells.medium = medium;
+        self.cells.fills = fills;
         self.cells.forces = forces;
+        self.cells.mass.values = mass.values;
         Ok(())
     }
 }

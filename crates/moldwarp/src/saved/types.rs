@@ -9,7 +9,7 @@ use crate::particles::Particles;
 use crate::saved;
 use crate::saved_enum;
 use crate::simulation::Clock;
-use crate::step::{CellForce, CellStress, CellSums, Cells, Node, Reference};
+use crate::step::{CellFill, CellForce, CellMedium, CellSums, Cells, Node, Reference};
 
 saved!(Particles {
     id,
@@ -45,21 +45,21 @@ saved!(CellSums {
     mass,
     volume,
     solid,
-});
-saved!(CellStress {
-    stress,
     closed,
+    stress,
+});
+saved!(CellMedium {
     moduli,
     wave_modulus,
     reference,
+    shares,
 });
+saved!(CellFill { filled, density });
 saved!(CellForce {
     stress,
     smoothed,
     viscous,
     weighed,
-    filled,
-    density,
 });
 
 impl crate::saved::Saved for Lane {
@@ -79,7 +79,9 @@ impl crate::saved::Saved for Lane {
 /// The sums and stresses of the last kick; all else is written by each step before it is read.
 impl crate::saved::Saved for Cells {
     fn size(&self) -> usize {
-        self.sums.size() + self.pairs.size() + self.stresses.size() + self.forces.size()
+        let mass = self.mass.values.size();
+        let (sums, medium) = (self.sums.size(), self.medium.size());
+        mass + sums + medium + self.fills.size() + self.forces.size()
     }
 
     fn save(&self, out: &mut crate::saved::Out) {
@@ -87,29 +89,32 @@ impl crate::saved::Saved for Cells {
             // Those of the mesh.
             shapes: _,
             sums,
-            pairs,
-            stresses,
+            medium,
+            fills,
             forces,
-            strains: _,
+            mass,
             portions: _,
             // Made anew.
             summed: _,
             worked: _,
         } = self;
         sums.save(out);
-        pairs.save(out);
-        stresses.save(out);
+        medium.save(out);
+        fills.save(out);
         forces.save(out);
+        mass.values.save(out);
     }
 
     fn load(from: &mut crate::saved::Bytes) -> Result<Cells, crate::saved::Broken> {
-        Ok(Cells {
+        let mut cells = Cells {
             sums: Vec::load(from)?,
-            pairs: Vec::load(from)?,
-            stresses: Vec::load(from)?,
+            medium: Vec::load(from)?,
+            fills: Vec::load(from)?,
             forces: Vec::load(from)?,
             ..Cells::default()
-        })
+        };
+        cells.mass.values = Vec::load(from)?;
+        Ok(cells)
     }
 }
 

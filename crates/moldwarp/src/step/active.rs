@@ -276,6 +276,23 @@ impl Active {
         self.own_tiles * LANES..self.elements.len()
     }
 
+    /// For each lane of guests one that has the same nodes and is not of guests.
+    pub(super) fn guest_pairs(&self) -> impl Iterator<Item = usize> {
+        let mut last = 0;
+        self.guest_lanes().map(move |lane| {
+            let element = self.elements[lane];
+            if element != NONE {
+                last = self.cell(element as usize, 0).expect("guests are in cells");
+            }
+            last
+        })
+    }
+
+    /// Of these tiles those that are not of guests.
+    pub(super) fn without_guests(&self, tiles: Range<usize>) -> Range<usize> {
+        tiles.start..tiles.end.min(self.own_tiles).max(tiles.start)
+    }
+
     fn number_nodes(&mut self, grid: &Grid, nodes: usize) {
         self.nodes.clear();
         self.keys.clear();

@@ -120,23 +120,28 @@ pub(super) fn add_corners(
     }
 }
 
-/// The same with two numbers that are alike for all corners.
+/// The same with two numbers that are alike for all corners, and perhaps one for each.
 pub(super) fn add_alike(
     simd: Simd,
     to: &mut [Quad],
     first: usize,
     cells: &[[u32; 4]; LANES],
     [a, b]: [&Lane; 2],
+    own: Option<&[Lane; 4]>,
 ) {
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::add_alike(to, first, cells, [a, b]) };
+        return unsafe { avx2::add_alike(to, first, cells, [a, b], own) };
     }
     let _ = simd;
-    for (l, cell) in cells.iter().enumerate() {
-        for &n in cell {
-            to[n as usize - first] += Quad([a[l], b[l], 0.0, 0.0]);
+    for (four, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
+        for i in 0..4 {
+            for (j, cell) in cells.iter().enumerate() {
+                let l = 4 * four + j;
+                let own = own.map_or(0.0, |own| own[i][l]);
+                to[cell[i] as usize - first] += Quad([a[l], b[l], own, 0.0]);
+            }
         }
     }
 }
@@ -249,15 +254,26 @@ mod avx2 {
     }
 
     #[target_feature(enable = "avx2")]
-    pub fn add_alike(to: &mut [Quad], first: usize, cells: &[[u32; 4]; LANES], [a, b]: [&Lane; 2]) {
+    pub fn add_alike(
+        to: &mut [Quad],
+        first: usize,
+        cells: &[[u32; 4]; LANES],
+        [a, b]: [&Lane; 2],
+        own: Option<&[Lane; 4]>,
+    ) {
         assert!(within(cells, first, to.len()));
         let zero = _mm256_setzero_pd();
         for (k, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
-            let rows = transpose(four(a, 4 * k), four(b, 4 * k), zero, zero);
-            for j in 0..4 {
-                for &n in &cells[j] {
+            let (a, b) = (four(a, 4 * k), four(b, 4 * k));
+            let alike = transpose(a, b, zero, zero);
+            for i in 0..4 {
+                let rows = match own {
+                    Some(own) => transpose(a, b, four(&own[i], 4 * k), zero),
+                    None => alike,
+                };
+                for j in 0..4 {
                     // SAFETY: all nodes are there.
-                    unsafe { add(to, n as usize - first, rows[j]) };
+                    unsafe { add(to, cells[j][i] as usize - first, rows[j]) };
                 }
             }
         }
@@ -291,7 +307,15 @@ mod tests {
             let mut sums = vec![Quad::default(); 23];
             let fourth = std::array::from_fn(|k| lane(k + 12));
             add_corners(simd, &mut sums, 7, &cells, &vectors, &fourth);
-            add_alike(simd, &mut sums, 7, &cells, [&lane(20), &lane(21)]);
+            add_alike(simd, &mut sums, 7, &cells, [&lane(20), &lane(21)], None);
+            add_alike(
+                simd,
+                &mut sums,
+                7,
+                &cells,
+                [&lane(22), &lane(23)],
+                Some(&fourth),
+            );
             sums
         });
         let mut corners = NO_CORNERS;
@@ -307,6 +331,6 @@ mod tests {
         let mut sums = vec![Quad::default(); 3];
         let cells = [[5, 6, 7, 8]; LANES];
         let zero = Lane::of(0.0);
-        add_alike(Simd::best(), &mut sums, 5, &cells, [&zero, &zero]);
+        add_alike(Simd::best(), &mut sums, 5, &cells, [&zero, &zero], None);
     }
 }

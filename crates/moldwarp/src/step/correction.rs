@@ -19,11 +19,9 @@
 //! compression at 2θ = 1.94 (Kuhn tetrahedra of cubes, ν = 0, Courant number 0.5); we take 1.6.
 //! (Averaging lumped and consistent mass for phase accuracy: Goudreau and Taylor 1973.)
 
-use super::collect::{Portions, Shares};
-use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes, set_corner};
-use super::{BLOCK, CellPairs, Node};
+use super::corners::Quad;
+use super::{BLOCK, ConsistentMass, Node, Shared};
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, for_each_simd, prefetch_record};
 use crate::parallel::fold;
 use crate::plan::MassMatrix;
 use crate::simulation::Simulation;
@@ -42,145 +40,45 @@ pub(super) fn stiffening(mass: MassMatrix) -> f64 {
     }
 }
 
-/// The pairs of a cell's nodes, in the order of [`CellPairs`](super::CellPairs).
-pub(super) const PAIRS: [(usize, usize); 10] = [
-    (0, 1),
-    (0, 2),
-    (0, 3),
-    (1, 2),
-    (1, 3),
-    (2, 3),
-    (0, 0),
-    (1, 1),
-    (2, 2),
-    (3, 3),
-];
-
-for_each_simd! {
-    /// Σ_j M_ij (w_i − w_j) of each node.
-    fn flow(w: &Corners, pairs: &CellPairs, sums: &mut Corners) {
-        for l in 0..LANES {
-            let w = all_corners(w, l);
-            let mut sum = [Vec3::ZERO; 4];
-            for k in 0..6 {
-                let (i, j) = PAIRS[k];
-                let flux = (w[i] - w[j]) * pairs[k][l];
-                sum[i] += flux;
-                sum[j] -= flux;
-            }
-            for i in 0..4 {
-                set_corner(sums, l, i, sum[i]);
-            }
-        }
+/// θ, if masses are corrected.
+pub(super) fn theta(mass: MassMatrix) -> f64 {
+    match mass {
+        MassMatrix::Lumped => 0.0,
+        MassMatrix::Corrected => CORRECTION,
     }
 }
 
-for_each_simd! {
-    /// Σ_j M_ij w_j of each node.
-    fn product(w: &Corners, pairs: &CellPairs, sums: &mut Corners) {
-        for l in 0..LANES {
-            let w = all_corners(w, l);
-            let mut sum = [Vec3::ZERO; 4];
-            for i in 0..4 {
-                sum[i] = w[i] * pairs[6 + i][l];
-            }
-            for k in 0..6 {
-                let (i, j) = PAIRS[k];
-                sum[i] += w[j] * pairs[k][l];
-                sum[j] += w[i] * pairs[k][l];
-            }
-            for i in 0..4 {
-                set_corner(sums, l, i, sum[i]);
-            }
-        }
-    }
-}
-
-/// What nodes exchange through the matrix M of their cells.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Through {
-    /// Σ_j M_ij (w_i − w_j).
-    Differences,
-    /// Σ_j M_ij w_j.
-    All,
-}
-
-/// Collects Σ_j M_ij w_j, w being accelerations (N) or velocities (kg m/s).
-pub(super) fn multiply(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) {
-    exchange(sim, w, Through::All);
-}
-
-fn exchange(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync, through: Through) {
-    let Simulation {
-        active,
-        nodes,
-        shared,
-        cells,
-        simd,
-        ..
-    } = sim;
-    let items = (&nodes[..], &mut shared.given[..]);
-    fold(items, BLOCK, &|(nodes, given): (&[Node], &mut [Quad])| {
+/// Has nodes give something to those around them, which see it in an array of its own.
+pub(super) fn give(nodes: &[Node], given: &mut [Quad], w: impl Fn(&Node) -> Vec3 + Sync) {
+    fold((nodes, given), BLOCK, &|(nodes, given): (
+        &[Node],
+        &mut [Quad],
+    )| {
         for (given, node) in given.iter_mut().zip(nodes) {
             *given = w(node).into();
         }
     });
-    let (active, given, pairs, simd) = (&*active, &shared.given[..], &cells.pairs[..], *simd);
-    let cut = cells.portions.cut();
-    let items = (0..pairs.len(), cells.portions.shares());
-    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<1>)| {
-        let (mut w, mut sums, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
-        let nothing = [Lane::of(0.0); 4];
-        for tile in tiles {
-            let nodes = active.tile_nodes(tile);
-            prefetch_record(pairs, tile + 1);
-            load_nodes(simd, &mut w, nodes, given);
-            match through {
-                Through::Differences => flow(simd, &w, &pairs[tile], &mut sums),
-                Through::All => product(simd, &w, &pairs[tile], &mut sums),
-            }
-            share.give(simd, nodes, &sums, &nothing);
-        }
-    });
 }
 
-/// Collects Σ_j M_ij (w_i − w_j) for [`changes`], w being accelerations (N) or averages (kg m/s), if masses are corrected.
-/// Returns θ.
-pub(super) fn correct(sim: &mut Simulation, w: impl Fn(&Node) -> Vec3 + Sync) -> f64 {
-    match sim.plan.numerics.mass {
-        MassMatrix::Lumped => 0.0,
-        MassMatrix::Corrected => {
-            exchange(sim, w, Through::Differences);
-            CORRECTION
-        }
-    }
-}
-
-/// Σ_j M_ij (w_i − w_j) at these nodes, after [`correct`].
-pub(super) fn changes(
-    theta: f64,
-    nodes: Range<usize>,
-    portions: &Portions,
-    changes: &mut [[Quad; BLOCK]; 1],
-) {
-    if theta != 0.0 {
-        portions.sums(nodes, changes);
-    }
-}
-
-/// B w − w at a node, from its sum.
+/// B w − w at a node of this lumped mass.
 #[inline]
-pub(super) fn change(theta: f64, mass: f64, sum: Quad) -> Vec3 {
-    match mass {
-        0.0 => Vec3::ZERO,
-        _ => sum.vector() * (theta / mass),
+pub(super) fn change(
+    theta: f64,
+    matrix: &ConsistentMass,
+    slot: usize,
+    mass: f64,
+    given: &[Quad],
+) -> Vec3 {
+    if theta == 0.0 || mass == 0.0 {
+        return Vec3::ZERO;
     }
+    matrix.flow(slot, given) * (theta / mass)
 }
 
 /// What particles receive of the nodes' accelerations in a kick of length `h`.
 pub(super) fn receive(sim: &mut Simulation, h: f64) {
-    let theta = correct(sim, |node| node.acceleration);
     let Simulation {
+        plan,
         active,
         nodes,
         shared,
@@ -189,18 +87,22 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         ledger,
         ..
     } = sim;
-    let (active, portions, constraints) = (&*active, &cells.portions, &*constraints);
-    let items = (0..nodes.len(), &mut nodes[..], &mut shared.received[..]);
+    let (active, matrix, constraints) = (&*active, &cells.mass, &*constraints);
+    let theta = theta(plan.numerics.mass);
+    let Shared {
+        given, received, ..
+    } = shared;
+    give(nodes, given, |node| node.acceleration);
+    let given = &given[..];
+    let items = (0..nodes.len(), &mut nodes[..], &mut received[..]);
     let gain = fold(items, BLOCK, &|(slots, nodes, received): (
         Range<usize>,
         &mut [Node],
         &mut [Quad],
     )| {
         let mut gain = 0.0;
-        let mut sums = [[Quad::default(); BLOCK]];
-        changes(theta, slots.clone(), portions, &mut sums);
-        for (((slot, node), received), &sum) in slots.zip(nodes).zip(received).zip(&sums[0]) {
-            let change = change(theta, node.mass, sum);
+        for ((slot, node), received) in slots.zip(nodes).zip(received) {
+            let change = change(theta, matrix, slot, node.mass, given);
             node.received = node.acceleration
                 + match constraints.of(active.nodes[slot]) {
                     Some(constraint) => constraint.free * change,

@@ -32,6 +32,7 @@ mod corners;
 mod correction;
 mod guard;
 mod guests;
+mod mass;
 mod motion;
 mod nodes;
 mod points;
@@ -50,11 +51,10 @@ mod to_particles;
 
 pub use active::{Active, Grid};
 pub(crate) use guests::Guests;
+pub(crate) use mass::ConsistentMass;
 pub(crate) use nodes::unheld;
 pub(crate) use reference::Reference;
-pub(crate) use state::{
-    CellForce, CellPairs, CellStrain, CellStress, CellSums, Cells, Node, Shared,
-};
+pub(crate) use state::{CellFill, CellForce, CellMedium, CellSums, Cells, Node, Shared};
 pub(crate) use stress::Answers;
 pub use time_step::TimeStepError;
 pub(crate) use time_step::critical;

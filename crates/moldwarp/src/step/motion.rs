@@ -1,8 +1,8 @@
 //! Stage 7: particles move with the nodes, x_p += Σ N_i Δu_i (Jassim et al. Eq. 9), and are looked for where they
 //! have come to (`points.rs` goes through them).
 
-use super::CellStrain;
 use super::shapes::Shapes;
+use super::strain::Deformation;
 use crate::Mat3;
 use crate::Vec3;
 use crate::boundary::Outflow;
@@ -62,7 +62,7 @@ for_each_simd! {
     pub(super) fn go_along(
         motion: &mut Motion,
         shapes: &Shapes,
-        strains: &CellStrain,
+        deformation: &Deformation,
         gravity: Vec3,
         position: &mut [&mut [f64]; 3],
         start: usize,
@@ -71,8 +71,8 @@ for_each_simd! {
         for l in 0..whole(lanes) {
             let mut x = Vec3::from_array(get(&motion.position, l));
             // Σ N_i Δu_i is Δu of node 0 and, from there on, ∇Δu times the way.
-            let gradient = Mat3::from_cols_array(&get(&strains.gradient, l));
-            let step = Vec3::from_array(get(&strains.origin, l)) + gradient * shapes.arm(l, x);
+            let gradient = Mat3::from_cols_array(&get(&deformation.gradient, l));
+            let step = Vec3::from_array(get(&deformation.origin, l)) + gradient * shapes.arm(l, x);
             x += step;
             set(&mut motion.position, l, x.to_array());
             motion.work[l] += motion.mass[l] * gravity.dot(step);

@@ -35,9 +35,9 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         Range<usize>,
         &mut [Node],
     )| {
-        let mut sums = [[Quad::default(); BLOCK]];
-        portions.sums(slots.clone(), &mut sums);
-        for ((slot, node), &sum) in slots.zip(nodes).zip(&sums[0]) {
+        let mut sums = [Quad::default(); BLOCK];
+        (portions.nodes).sums(slots.clone(), &mut [&mut sums]);
+        for ((slot, node), &sum) in slots.zip(nodes).zip(&sums) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
                 *node = Node {
@@ -116,9 +116,9 @@ pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
         sim.slots(mesh_node)
             .map(|slot| {
                 let node = &sim.nodes[slot];
-                let mut sum = [[Quad::default()]];
-                sim.cells.portions.sums(slot..slot + 1, &mut sum);
-                let (internal, weighed) = pushed(sum[0][0]);
+                let mut sum = [Quad::default()];
+                (sim.cells.portions.nodes).sums(slot..slot + 1, &mut [&mut sum]);
+                let (internal, weighed) = pushed(sum[0]);
                 let weighed = sim.reference.as_ref().map_or(node.mass, |_| weighed);
                 internal + sim.gravity * weighed + node.load
             })

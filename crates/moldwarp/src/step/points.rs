@@ -4,12 +4,11 @@
 //! One pass in place of four, since a particle's numbers come from memory, which takes about as long as to compute with
 //! them.
 
-use super::collect::Shares;
 use super::motion::{self, Crossing, Motion, Search, go_along};
 use super::state::Summed;
-use super::strain::own_work;
+use super::strain::{Deformation, own_work};
 use super::stress::{Arrays as Stressed, Stresses};
-use super::sums::{Arrays as SumArrays, Asked, Counted, Records, Sums};
+use super::sums::{self, Arrays as SumArrays, Asked, Counted, Given as Sharing, Sums};
 use super::to_particles::{Before, Given, Kick};
 use crate::lanes::{self, ByTile, Lane, load, prefetch, prefetch_bodies, prefetch_record, store};
 use crate::parallel::Smallest;
@@ -79,39 +78,29 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     type Arrays<'a> = (Stressed<'a>, (Vectors<'a>, Vectors<'a>), &'a mut [u32]);
     let vectors = (position.components_mut(), velocity.components_mut());
     let arrays: Arrays = (stressed, vectors, &mut element[..]);
-    let records = (
-        &mut cells.sums[..],
-        &mut cells.pairs[..],
-        &mut cells.stresses[..],
-    );
-    let (shapes, strains) = (&cells.shapes[..], &cells.strains[..]);
-    let cut = cells.portions.cut();
-    let all = ByTile::new(&active.tiles, arrays, (records, cells.portions.shares()));
-    let work = |block: ByTile<Arrays, (SumArrays, Shares<2>)>| {
+    let smoothing = plan.numerics.smoothing;
+    let differs = sums::differs(elasticity, asked.reference);
+    let (records, sharing, shapes, pairs, cut) = sums::arrays(cells, differs);
+    let all = ByTile::new(&active.tiles, arrays, (records, sharing));
+    let work = |block: ByTile<Arrays, (SumArrays, Sharing)>| {
         let first = block.first();
         let tiles = block.each();
         let (mut stressed, (mut position, mut velocity), elements) = block.particles;
-        let ((cell_sums, pairs, stresses), shares) = block.cells;
+        let (records, (to_nodes, to_pairs)) = block.cells;
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
-        let (mut sums, mut share) = (Sums::default(), shares.begin());
+        let mut sums = Sums::default();
+        let mut giving = (to_nodes.begin(), to_pairs.begin());
         let (mut kick, mut speeds) = (Kick::default(), [Lane::of(0.0); 3]);
-        let mut crossing = Crossing::default();
+        let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
         // Work of the particles' stresses in the halves of the drift.
         let (mut begun, mut ended) = (Lane::of(0.0), [Lane::of(0.0); 2]);
-        let records = cell_sums.iter_mut().zip(pairs).zip(stresses);
-        for ((number, tile), ((sum, pairs), cell_stress)) in tiles.zip(records) {
+        for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
             let nodes = active.tile_nodes(number);
-            prefetch_record(strains, number + 1);
             prefetch_record(shapes, number + 1);
-            let (strains, shapes) = (&strains[number], &shapes[number]);
-            own_work(simd, strains, cell_stress, &mut begun);
-            stress.enter(strains, nodes, shared);
+            let shapes = &shapes[number];
+            deformation.enter(simd, shapes, nodes, shared, smoothing);
+            own_work(simd, &deformation, records.sum, &mut begun);
             kick.enter(simd, &given, nodes, shapes);
-            let mut records = Records {
-                sum,
-                pairs,
-                stress: cell_stress,
-            };
             if stays {
                 sums.enter(&mut records);
             }
@@ -142,12 +131,12 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 };
                 kick.give(simd, &given, &before, &mut speeds, shapes, lanes);
                 store(&speeds, &mut velocity, start, lanes);
-                stress.update(strains, slot.clone(), bodies, &mut stressed, first);
+                stress.update(&deformation, slot.clone(), bodies, &mut stressed, first);
                 go_along(
                     simd,
                     &mut motion,
                     shapes,
-                    strains,
+                    &deformation,
                     gravity,
                     &mut position,
                     start,
@@ -172,9 +161,10 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 sums.add(&asked, &points, bodies, &mut records);
             }
             if stays {
-                sums.leave(simd, tile, &mut records, nodes, &mut share);
+                let pairs = pairs.tile_pairs(number);
+                sums.leave(simd, tile, &mut records, nodes, pairs, &mut giving);
                 let guests = usize::from(number >= active.own_tiles());
-                own_work(simd, strains, records.stress, &mut ended[guests]);
+                own_work(simd, &deformation, records.sum, &mut ended[guests]);
             }
         }
         let [begun, own, guests] = [&begun, &ended[0], &ended[1]].map(lanes::sum);

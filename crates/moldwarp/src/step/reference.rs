@@ -11,7 +11,7 @@
 //! (Well-balanced schemes: the idea is that of Greenberg and Leroux 1996.) The difference between
 //! this weight and that of the particles goes to `integration` in the ledger.
 
-use super::CellStress;
+use super::CellMedium;
 use super::to_nodes::Around;
 use crate::Vec3;
 use crate::mesh::Mesh;
@@ -39,12 +39,12 @@ pub(super) struct Scaled<'a> {
 impl Reference {
     /// Adds a particle to the sums of the cell in a lane.
     #[inline]
-    pub fn add(&self, sum: &mut CellStress, lane: usize, body: usize, x: Vec3, volume: f64) {
+    pub fn add(&self, medium: &mut CellMedium, lane: usize, body: usize, x: Vec3, volume: f64) {
         if let Some(k0) = self.k0[body] {
             let vertical = self.ground.vertical(x) * volume;
-            sum.reference[0][lane] += vertical;
-            sum.reference[1][lane] += k0 * vertical;
-            sum.reference[2][lane] += volume;
+            medium.reference[0][lane] += vertical;
+            medium.reference[1][lane] += k0 * vertical;
+            medium.reference[2][lane] += volume;
         }
     }
 

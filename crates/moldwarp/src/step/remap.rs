@@ -16,8 +16,7 @@ use std::ops::Range;
 pub(super) fn run(sim: &mut Simulation, dt: f64) {
     hold(sim);
     contact::remap(sim, |node| &mut node.average);
-    let theta = correction::correct(sim, |node| node.average);
-    correct(sim, theta);
+    correct(sim);
     contact::remap(sim, |node| &mut node.grid_velocity);
     move_nodes(sim, dt);
     contact::work(sim);
@@ -59,24 +58,28 @@ fn hold(sim: &mut Simulation) {
 }
 
 /// v_i with constraints applied again.
-fn correct(sim: &mut Simulation, theta: f64) {
+fn correct(sim: &mut Simulation) {
     let Simulation {
+        plan,
         active,
         nodes,
+        shared,
         cells,
         constraints,
         ..
     } = sim;
-    let (active, portions, constraints) = (&*active, &cells.portions, &*constraints);
+    let (active, matrix, constraints) = (&*active, &cells.mass, &*constraints);
+    let theta = correction::theta(plan.numerics.mass);
+    correction::give(nodes, &mut shared.given, |node| node.average);
+    let given = &shared.given[..];
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let mut changes = [[Quad::default(); BLOCK]];
-        correction::changes(theta, slots.clone(), portions, &mut changes);
-        for ((slot, node), &change) in slots.zip(nodes).zip(&changes[0]) {
-            node.grid_velocity = node.average + correction::change(theta, node.mass, change);
+        for (slot, node) in slots.zip(nodes) {
+            let change = correction::change(theta, matrix, slot, node.mass, given);
+            node.grid_velocity = node.average + change;
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =
                     constraint.free * node.grid_velocity + constraints.prescribed(constraint);

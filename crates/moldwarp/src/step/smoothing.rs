@@ -61,9 +61,9 @@ fn means_at_nodes(portions: &Portions, means: &mut [f64], factor: f64) {
         Range<usize>,
         &mut [f64],
     )| {
-        let mut sums = [[Quad::default(); BLOCK]];
-        portions.sums(slots, &mut sums);
-        for (mean, &Quad([sum, all, ..])) in means.iter_mut().zip(&sums[0]) {
+        let mut sums = [Quad::default(); BLOCK];
+        portions.nodes.sums(slots, &mut [&mut sums]);
+        for (mean, &Quad([sum, all, ..])) in means.iter_mut().zip(&sums) {
             let whole = factor * all;
             *mean = if all > 0.0 { sum / whole } else { 0.0 };
         }
@@ -88,28 +88,36 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     let Cells {
         shapes,
         sums,
-        stresses,
+        fills,
         forces,
         portions,
         ..
     } = cells;
-    let (shapes, sums, stresses) = (&shapes[..], &sums[..], &stresses[..]);
-    let weight = |tile: usize, l: usize, force: &CellForce| {
-        let (volume, closed) = (sums[tile].volume[l], stresses[tile].closed[l]);
-        weight(force.filled[l], volume, closed, shapes[tile].volume[l])
+    let (shapes, sums, fills) = (&shapes[..], &sums[..], &fills[..]);
+    let weight = |tile: usize, l: usize| {
+        let (volume, closed) = (sums[tile].volume[l], sums[tile].closed[l]);
+        weight(
+            fills[tile].filled[l],
+            volume,
+            closed,
+            shapes[tile].volume[l],
+        )
     };
     let (cut, known) = (portions.cut(), &forces[..]);
     let items = (0..known.len(), portions.shares());
-    cut.fold(items, &|(tiles, shares): (Range<usize>, Shares<1>)| {
+    cut.fold(items, &|(tiles, shares): (
+        Range<usize>,
+        Shares<Quad, 1>,
+    )| {
         let (mut traces, mut weights) = (Lane::of(0.0), Lane::of(0.0));
         let mut share = shares.begin();
-        for tile in tiles {
+        for tile in active.without_guests(tiles) {
             let force = &known[tile];
             for l in 0..LANES {
                 traces[l] = tensor::trace(&get(&force.stress, l));
-                weights[l] = weight(tile, l, force);
+                weights[l] = weight(tile, l);
             }
-            share.give_alike(simd, active.tile_nodes(tile), [&traces, &weights]);
+            share.give_alike(simd, active.tile_nodes(tile), [&traces, &weights], None);
         }
     });
     // q_n: a trace is three times the mean, and a quarter goes to each node.
@@ -119,17 +127,17 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     let work = cut.fold(items, &|(tiles, forces, shares): (
         Range<usize>,
         &mut [CellForce],
-        Shares<1>,
+        Shares<Quad, 1>,
     )| {
         let (mut work, mut moved, mut pushed) = (0.0, NO_CORNERS, NO_CORNERS);
         let (mut means, mut share) = (Lane::of(0.0), shares.begin());
-        for (tile, force) in tiles.zip(forces) {
+        for (tile, force) in active.without_guests(tiles).zip(forces) {
             let nodes = active.tile_nodes(tile);
             sum_nodes(&mut means, nodes, &shared.mean_stress);
             load_nodes(simd, &mut moved, nodes, &shared.moved);
             for l in (0..LANES).filter(|&l| active.is_cell[tile * LANES + l]) {
                 let own = tensor::trace(&get(&force.stress, l)) / 3.0;
-                let added = means[l] * weight(tile, l, force) - own;
+                let added = means[l] * weight(tile, l) - own;
                 force.smoothed[l] = added;
                 (0..3).for_each(|k| force.stress[k][l] += added);
                 if before > 0.0 {

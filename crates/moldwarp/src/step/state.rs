@@ -2,6 +2,7 @@
 
 use super::collect::Portions;
 use super::corners::Quad;
+use super::mass::ConsistentMass;
 use super::shapes::Shapes;
 use super::{Active, TILES};
 use crate::Vec3;
@@ -86,33 +87,41 @@ impl Shared {
 /// Sums over the particles of each cell.
 #[derive(Clone, Debug)]
 pub struct CellSums {
-    /// Σ m_p N_i for each node, kg.
-    pub mass: [Lane; 4],
+    /// Σ m_p, kg.
+    pub mass: Lane,
     /// Σ V_p, m³.
     pub volume: Lane,
     /// Σ V_p without what has opened in tension, m³: it judges filling.
     pub solid: Lane,
-}
-
-/// M_ij = Σ m_p N_i N_j of each pair of a cell's nodes: 01, 02, 03, 12, 13, 23, and 00, 11, 22, 33, kg.
-pub type CellPairs = [Lane; 10];
-
-/// Sums over the particles of each cell that make its stress.
-#[derive(Clone, Debug)]
-pub struct CellStress {
-    /// Σ σ_p V_p, J.
-    pub stress: VoigtLanes,
     /// Σ V_p of particles that are not separated, m³.
     pub closed: Lane,
+    /// Σ σ_p V_p, J.
+    pub stress: VoigtLanes,
+}
+
+/// More sums, kept where bodies differ in elasticity or there is a reference stress.
+#[derive(Clone, Debug)]
+pub struct CellMedium {
     /// Σ λ V_p and Σ G V_p, J.
     pub moduli: [Lane; 2],
     /// Greatest constrained modulus of its particles, Pa.
     pub wave_modulus: Lane,
     /// Of particles with a reference stress: Σ σ_v V_p and Σ K₀ σ_v V_p, J, and Σ V_p, m³.
     pub reference: [Lane; 3],
+    /// Σ m_p N_i for each node, kg.
+    pub shares: [Lane; 4],
 }
 
-/// Stress times volume that acts on each cell's nodes: f_i = −S ∇N_i.
+/// How full cells are.
+#[derive(Clone, Debug)]
+pub struct CellFill {
+    /// 1 where the cell counts as filled.
+    pub filled: Lane,
+    /// Density by which a filled cell's waves run, kg/m³.
+    pub density: Lane,
+}
+
+/// Stress times volume that acts on each cell's nodes: f_i = −S ∇N_i. Kept where a later stage looks at it.
 #[derive(Clone, Debug)]
 pub struct CellForce {
     /// σ̄ V_e if filled, else Σ σ_p V_p, J.
@@ -121,23 +130,8 @@ pub struct CellForce {
     pub smoothed: Lane,
     /// The viscous part, J.
     pub viscous: VoigtLanes,
-    /// The mass whose weight pulls at each node, kg.
+    /// The mass whose weight pulls at each node where there is a reference stress, kg.
     pub weighed: [Lane; 4],
-    /// 1 where the cell counts as filled.
-    pub filled: Lane,
-    /// Density by which a filled cell's waves run, kg/m³.
-    pub density: Lane,
-}
-
-/// Deformation of each cell in a step.
-#[derive(Clone, Debug)]
-pub struct CellStrain {
-    /// ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step, by columns.
-    pub gradient: [Lane; 9],
-    /// Δu of node 0, m.
-    pub origin: [Lane; 3],
-    /// Trace of the gradient in the middle of the step (`strain::midpoint`).
-    pub volumetric: Lane,
 }
 
 /// What the step keeps per cell, one record a tile.
@@ -145,10 +139,12 @@ pub struct CellStrain {
 pub struct Cells {
     pub shapes: Vec<Shapes>,
     pub sums: Vec<CellSums>,
-    pub pairs: Vec<CellPairs>,
-    pub stresses: Vec<CellStress>,
+    /// None, if all bodies are alike.
+    pub medium: Vec<CellMedium>,
+    pub fills: Vec<CellFill>,
+    /// None, if no later stage looks at them.
     pub forces: Vec<CellForce>,
-    pub strains: Vec<CellStrain>,
+    pub mass: ConsistentMass,
     /// What nodes collect.
     pub portions: Portions,
     /// Whose sums the last drift has made.
@@ -173,38 +169,54 @@ const ZERO: Lane = Lane::of(0.0);
 impl CellSums {
     /// All sums.
     pub(super) fn lanes(&mut self) -> impl Iterator<Item = &mut Lane> {
-        (self.mass.iter_mut()).chain([&mut self.volume, &mut self.solid])
+        [
+            &mut self.mass,
+            &mut self.volume,
+            &mut self.solid,
+            &mut self.closed,
+        ]
+        .into_iter()
+        .chain(&mut self.stress)
     }
 }
 
-impl CellStress {
+impl CellMedium {
     /// All sums; the greatest modulus is none.
     pub(super) fn lanes(&mut self) -> impl Iterator<Item = &mut Lane> {
-        (self.stress.iter_mut())
-            .chain([&mut self.closed])
-            .chain(&mut self.moduli)
+        (self.moduli.iter_mut())
             .chain(&mut self.reference)
+            .chain(&mut self.shares)
     }
 }
 
 impl Default for CellSums {
     fn default() -> CellSums {
         CellSums {
-            mass: [ZERO; 4],
+            mass: ZERO,
             volume: ZERO,
             solid: ZERO,
+            closed: ZERO,
+            stress: [ZERO; 6],
         }
     }
 }
 
-impl Default for CellStress {
-    fn default() -> CellStress {
-        CellStress {
-            stress: [ZERO; 6],
-            closed: ZERO,
+impl Default for CellMedium {
+    fn default() -> CellMedium {
+        CellMedium {
             moduli: [ZERO; 2],
             wave_modulus: ZERO,
             reference: [ZERO; 3],
+            shares: [ZERO; 4],
+        }
+    }
+}
+
+impl Default for CellFill {
+    fn default() -> CellFill {
+        CellFill {
+            filled: ZERO,
+            density: ZERO,
         }
     }
 }
@@ -216,18 +228,6 @@ impl Default for CellForce {
             smoothed: ZERO,
             viscous: [ZERO; 6],
             weighed: [ZERO; 4],
-            filled: ZERO,
-            density: ZERO,
-        }
-    }
-}
-
-impl Default for CellStrain {
-    fn default() -> CellStrain {
-        CellStrain {
-            gradient: [ZERO; 9],
-            origin: [ZERO; 3],
-            volumetric: ZERO,
         }
     }
 }
@@ -236,7 +236,8 @@ impl Cells {
     /// Of these cells.
     pub(crate) fn renew(&mut self, active: &Active, mesh: &Mesh) {
         self.resize(active);
-        self.portions.renew(&active.cell_nodes, active.own_tiles());
+        self.mass.renew(&active.cell_nodes, active.nodes.len());
+        (self.portions).renew(&active.cell_nodes, active.own_tiles(), &self.mass);
         self.summed = Summed::Nothing;
         self.find_shapes(active, mesh);
     }
@@ -245,27 +246,38 @@ impl Cells {
         let tiles = active.tiles.len();
         self.shapes.resize_with(tiles, Shapes::default);
         self.sums.resize_with(tiles, CellSums::default);
-        self.pairs.resize(tiles, [ZERO; 10]);
-        self.stresses.resize_with(tiles, CellStress::default);
-        self.forces.resize_with(tiles, CellForce::default);
-        self.strains.resize_with(tiles, CellStrain::default);
+        self.fills.resize_with(tiles, CellFill::default);
+        self.keep_medium(!self.medium.is_empty());
+        self.keep_forces(!self.forces.is_empty());
+    }
+
+    /// Whether the medium of cells is kept.
+    pub(super) fn keep_medium(&mut self, kept: bool) {
+        keep(&mut self.medium, kept, &self.sums);
+    }
+
+    /// Whether stresses of cells are kept.
+    pub(super) fn keep_forces(&mut self, kept: bool) {
+        keep(&mut self.forces, kept, &self.sums);
     }
 
     /// Room for guests. A portion of theirs may have all nodes.
     pub(crate) fn make_room(&mut self, tiles: usize, nodes: usize) {
         self.shapes.reserve(tiles);
         self.sums.reserve(tiles);
-        self.pairs.reserve(tiles);
-        self.stresses.reserve(tiles);
-        self.forces.reserve(tiles);
-        self.strains.reserve(tiles);
-        self.portions.make_room(nodes);
+        self.fills.reserve(tiles);
+        self.keep_medium(!self.medium.is_empty());
+        self.keep_forces(!self.forces.is_empty());
+        self.mass.make_room(tiles * LANES);
+        self.portions.make_room(nodes, self.mass.values.len());
     }
 
     /// The same after guests have been laid out anew.
     pub(crate) fn renew_guests(&mut self, active: &Active, mesh: &Mesh) {
         self.resize(active);
-        self.portions.renew_guests(&active.cell_nodes);
+        self.mass
+            .renew_guests(active.own_tiles() * LANES, active.guest_pairs());
+        (self.portions).renew_guests(&active.cell_nodes, &self.mass);
         if self.summed == Summed::All {
             self.summed = Summed::Own;
         }
@@ -282,11 +294,14 @@ impl Cells {
         for (to, from) in sums[to].lanes().zip(guests[0].lanes()) {
             to[b] += std::mem::replace(&mut from[a], 0.0);
         }
-        let (stresses, guests) = self.stresses.split_at_mut(from);
-        for (to, from) in stresses[to].lanes().zip(guests[0].lanes()) {
+        if self.medium.is_empty() {
+            return;
+        }
+        let (medium, guests) = self.medium.split_at_mut(from);
+        for (to, from) in medium[to].lanes().zip(guests[0].lanes()) {
             to[b] += std::mem::replace(&mut from[a], 0.0);
         }
-        let (own, guest) = (&mut stresses[to].wave_modulus, &guests[0].wave_modulus);
+        let (own, guest) = (&mut medium[to].wave_modulus, &guests[0].wave_modulus);
         own[b] = own[b].max(guest[a]);
     }
 
@@ -308,6 +323,16 @@ impl Cells {
     pub(crate) fn volume(&self, c: usize) -> f64 {
         let (tile, lane) = lane_of(c);
         self.sums[tile].volume[lane]
+    }
+}
+
+/// Has as many records as there are of another kind, and as much room, or none.
+fn keep<T: Default, U>(records: &mut Vec<T>, kept: bool, like: &Vec<U>) {
+    if kept {
+        records.reserve_exact(like.capacity() - records.len());
+        records.resize_with(like.len(), T::default);
+    } else {
+        records.clear();
     }
 }
 

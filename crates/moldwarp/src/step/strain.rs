@@ -1,10 +1,10 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
 use super::collect::Shares;
-use super::corners::{Corners, NO_CORNERS, all_corners, load_nodes};
+use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
 use super::shapes::Shapes;
-use super::{CellForce, CellStrain, CellStress, CellSums, Cells, smoothing};
-use crate::lanes::{self, LANES, Lane, for_each_simd, get, set};
+use super::{CellFill, CellForce, CellSums, Cells, Shared, smoothing};
+use crate::lanes::{self, LANES, Lane, Simd, VoigtLanes, either, for_each_simd, get, set};
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3, tensor};
@@ -39,61 +39,127 @@ pub(super) fn midpoint(gradient: &Mat3) -> Mat3 {
     *gradient * inverse
 }
 
+/// Deformation of cells side by side in a step.
+pub(super) struct Deformation {
+    /// ∇Δu = Σ Δu_i ⊗ ∇N_i in the configuration at the start of the step, by columns.
+    pub gradient: [Lane; 9],
+    /// Δu of node 0, m.
+    pub origin: [Lane; 3],
+    /// Trace of the gradient in the middle of the step ([`midpoint`]).
+    pub volumetric: Lane,
+    /// The same, smoothed.
+    pub smoothed: Lane,
+    /// Strain in the middle of the step with the smoothed trace.
+    pub strain: VoigtLanes,
+    /// Rotation of the step, by columns.
+    pub turn: [Lane; 9],
+    moved: Corners,
+}
+
+impl Default for Deformation {
+    fn default() -> Deformation {
+        Deformation {
+            gradient: [Lane::of(0.0); 9],
+            origin: [Lane::of(0.0); 3],
+            volumetric: Lane::of(0.0),
+            smoothed: Lane::of(0.0),
+            strain: [Lane::of(0.0); 6],
+            turn: [Lane::of(0.0); 9],
+            moved: NO_CORNERS,
+        }
+    }
+}
+
+impl Deformation {
+    /// Goes to the next cells.
+    pub fn enter(
+        &mut self,
+        simd: Simd,
+        shapes: &Shapes,
+        nodes: &[[u32; 4]; LANES],
+        shared: &Shared,
+        smoothing: Smoothing,
+    ) {
+        load_nodes(simd, &mut self.moved, nodes, &shared.moved);
+        let smooth = smoothing != Smoothing::Off;
+        if smooth {
+            smoothing::means(&mut self.smoothed, nodes, &shared.volumetric);
+        }
+        deform(simd, shapes, smooth, self);
+    }
+}
+
+for_each_simd! {
+    fn deform(shapes: &Shapes, smooth: bool, d: &mut Deformation) {
+        for l in 0..LANES {
+            let corners = all_corners(&d.moved, l);
+            let gradient = gradient(&shapes.gradients(l), corners);
+            let midpoint = midpoint(&gradient);
+            let volumetric = trace(&midpoint);
+            let smoothed = either(smooth, d.smoothed[l], volumetric);
+            let mut strain = tensor::strain(&midpoint);
+            let change = (smoothed - volumetric) / 3.0;
+            (0..3).for_each(|k| strain[k] += change);
+            set(&mut d.gradient, l, gradient.to_cols_array());
+            set(&mut d.origin, l, corners[0].to_array());
+            (d.volumetric[l], d.smoothed[l]) = (volumetric, smoothed);
+            set(&mut d.strain, l, strain);
+            set(&mut d.turn, l, tensor::spin_rotation(&midpoint).to_cols_array());
+        }
+    }
+}
+
+#[inline(always)]
+fn trace(gradient: &Mat3) -> f64 {
+    gradient.x_axis.x + gradient.y_axis.y + gradient.z_axis.z
+}
+
 for_each_simd! {
     /// Half the work of the particles' stresses on the deformation of their cells, J.
-    pub(super) fn own_work(strains: &CellStrain, stress: &CellStress, work: &mut Lane) {
+    pub(super) fn own_work(deformation: &Deformation, sum: &CellSums, work: &mut Lane) {
         for l in 0..LANES {
-            let strain = tensor::strain(&Mat3::from_cols_array(&get(&strains.gradient, l)));
-            work[l] += 0.5 * tensor::dot(&get(&stress.stress, l), &strain);
+            let strain = tensor::strain(&Mat3::from_cols_array(&get(&deformation.gradient, l)));
+            work[l] += 0.5 * tensor::dot(&get(&sum.stress, l), &strain);
+        }
+    }
+}
+
+/// Records of a tile that tell how much its cells weigh in the means of their nodes.
+struct Weighed<'a> {
+    shapes: &'a Shapes,
+    sum: &'a CellSums,
+    fill: &'a CellFill,
+}
+
+for_each_simd! {
+    /// θ_e w_e and w_e.
+    fn weigh(tile: &Weighed, moved: &Corners, weights: &mut [Lane; 2]) {
+        let Weighed { shapes, sum, fill } = tile;
+        for l in 0..LANES {
+            let gradient = gradient(&shapes.gradients(l), all_corners(moved, l));
+            let volumetric = trace(&midpoint(&gradient));
+            let (volume, whole) = (sum.volume[l], shapes.volume[l]);
+            let weight = smoothing::weight(fill.filled[l], volume, sum.closed[l], whole);
+            set(weights, l, [volumetric * weight, weight]);
         }
     }
 }
 
 for_each_simd! {
-    /// The same of viscous stresses, and of what smoothing has added.
-    fn more_work(strains: &CellStrain, force: &CellForce, works: &mut [Lane; 2]) {
+    /// Half the work of viscous stresses, and of what smoothing has added, J.
+    fn more_work(shapes: &Shapes, moved: &Corners, force: &CellForce, works: &mut [Lane; 2]) {
         for l in 0..LANES {
-            let strain = tensor::strain(&Mat3::from_cols_array(&get(&strains.gradient, l)));
+            let gradient = gradient(&shapes.gradients(l), all_corners(moved, l));
+            let strain = tensor::strain(&gradient);
             works[0][l] += 0.5 * tensor::dot(&get(&force.viscous, l), &strain);
             works[1][l] += 0.5 * force.smoothed[l] * tensor::trace(&strain);
         }
     }
 }
 
-/// Records of a tile that the deformation works on.
-struct Worked<'a> {
-    shapes: &'a Shapes,
-    sum: &'a CellSums,
-    stress: &'a CellStress,
-    force: &'a CellForce,
-}
-
-for_each_simd! {
-    fn deform(
-        tile: &Worked,
-        moved: &Corners,
-        strains: &mut CellStrain,
-        weights: &mut [Lane; 2],
-    ) {
-        let Worked { shapes, sum, stress, force } = tile;
-        for l in 0..LANES {
-            let corners = all_corners(moved, l);
-            let gradient = gradient(&shapes.gradients(l), corners);
-            let midpoint = midpoint(&gradient);
-            let volumetric = midpoint.x_axis.x + midpoint.y_axis.y + midpoint.z_axis.z;
-            set(&mut strains.gradient, l, gradient.to_cols_array());
-            set(&mut strains.origin, l, corners[0].to_array());
-            strains.volumetric[l] = volumetric;
-            let (volume, whole) = (sum.volume[l], shapes.volume[l]);
-            let weight = smoothing::weight(force.filled[l], volume, stress.closed[l], whole);
-            set(weights, l, [volumetric * weight, weight]);
-        }
-    }
-}
-
+/// What nodes need for their means of the volumetric strain.
 fn gradients(sim: &mut Simulation) {
     let Simulation {
-        plan,
         active,
         shared,
         cells,
@@ -101,43 +167,39 @@ fn gradients(sim: &mut Simulation) {
         simd,
         ..
     } = sim;
-    let numerics = &plan.numerics;
-    let more = numerics.viscosity > 0.0 || numerics.smoothing == Smoothing::Conjugate;
     let (active, shared, simd) = (&*active, &*shared, *simd);
     let Cells {
         shapes,
         sums,
-        stresses,
+        fills,
         forces,
-        strains,
         portions,
         ..
     } = cells;
     let (shapes, sums) = (&shapes[..], &sums[..]);
-    let (stresses, forces) = (&stresses[..], &forces[..]);
+    let (fills, forces) = (&fills[..], &forces[..]);
     let cut = portions.cut();
-    let items = (0..sums.len(), &mut strains[..], portions.shares());
-    let work = cut.fold(items, &|(tiles, strains, shares): (
+    let items = (0..sums.len(), portions.shares());
+    let work = cut.fold(items, &|(tiles, shares): (
         Range<usize>,
-        &mut [CellStrain],
-        Shares<1>,
+        Shares<Quad, 1>,
     )| {
         let (mut moved, mut share) = (NO_CORNERS, shares.begin());
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
-        for (tile, strains) in tiles.zip(strains) {
+        for tile in active.without_guests(tiles) {
             let nodes = active.tile_nodes(tile);
             load_nodes(simd, &mut moved, nodes, &shared.moved);
-            let tile = Worked {
-                shapes: &shapes[tile],
+            let shapes = &shapes[tile];
+            let weighed = Weighed {
+                shapes,
                 sum: &sums[tile],
-                stress: &stresses[tile],
-                force: &forces[tile],
+                fill: &fills[tile],
             };
-            deform(simd, &tile, &moved, strains, &mut weights);
-            if more {
-                more_work(simd, strains, tile.force, &mut works);
+            weigh(simd, &weighed, &moved, &mut weights);
+            if let Some(force) = forces.get(tile) {
+                more_work(simd, shapes, &moved, force, &mut works);
             }
-            share.give_alike(simd, nodes, weights.each_ref());
+            share.give_alike(simd, nodes, weights.each_ref(), None);
         }
         works.each_ref().map(lanes::sum)
     });

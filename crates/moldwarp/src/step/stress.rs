@@ -5,16 +5,15 @@ mod external;
 pub(crate) use external::Answers;
 pub(super) use external::ask;
 
-use super::strain::midpoint;
-use super::{CellStrain, Shared, smoothing};
+use super::strain::Deformation;
 use crate::Mat3;
 use crate::lanes::{
-    self, LANES, Lane, Simd, VoigtLanes, alike, any, either, for_each_simd, get, load, load_one,
-    set, store, store_one, whole,
+    self, LANES, Lane, Simd, alike, any, either, for_each_simd, get, load, load_one, set, store,
+    store_one, whole,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
 use crate::parallel::{Smallest, Sum};
-use crate::plan::{Plan, Smoothing};
+use crate::plan::Plan;
 use crate::tensor::{self, Voigt};
 use std::ops::Range;
 
@@ -25,16 +24,7 @@ pub(super) type Arrays<'a> = (
     &'a mut [f64],
 );
 
-/// Cells side by side.
-pub(super) struct Side {
-    /// Volumetric strain, smoothed.
-    smoothed: Lane,
-    strain: VoigtLanes,
-    /// Rotation of the step, by columns.
-    turn: [Lane; 9],
-}
-
-/// Particles side by side.
+/// Particles side by own.
 pub(super) struct Points {
     pub increment: Strained,
     pub volume: Lane,
@@ -50,7 +40,6 @@ pub(super) struct Stresses<'a> {
     plan: &'a Plan,
     answers: &'a Answers,
     simd: Simd,
-    side: Side,
     pub points: Points,
     works: Works,
     /// Volume after the step over that before.
@@ -63,18 +52,10 @@ impl<'a> Stresses<'a> {
             plan,
             answers,
             simd,
-            side: Side::default(),
             points: Points::default(),
             works: [Lane::of(0.0); 3],
             least: Lane::of(f64::INFINITY),
         }
-    }
-
-    /// Goes to the next cells.
-    #[inline]
-    pub fn enter(&mut self, strains: &CellStrain, nodes: &[[u32; 4]; LANES], shared: &Shared) {
-        let smooth = self.plan.numerics.smoothing != Smoothing::Off;
-        self.side.find(self.simd, strains, smooth, nodes, shared);
     }
 
     /// New stresses, state variables and volumes of the particles of a slot of these cells; `first` is the first
@@ -82,7 +63,7 @@ impl<'a> Stresses<'a> {
     #[inline]
     pub fn update(
         &mut self,
-        strains: &CellStrain,
+        own: &Deformation,
         slot: Range<usize>,
         body: &[u16],
         arrays: &mut Arrays,
@@ -92,7 +73,6 @@ impl<'a> Stresses<'a> {
             plan,
             answers,
             simd,
-            side,
             points,
             works,
             least,
@@ -100,9 +80,9 @@ impl<'a> Stresses<'a> {
         let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
         let (start, place, lanes) = (slot.start - first, slot.start, slot.len());
         points.look_up(body, model, arrays, start);
-        strain(*simd, strains, side, points, arrays, start, lanes);
+        strain(*simd, own, points, arrays, start, lanes);
         points.update(*simd, body, model, (answers, place));
-        book(*simd, strains, side, points, works, least, lanes);
+        book(*simd, own, points, works, least, lanes);
         keep(*simd, points, arrays, start, lanes);
     }
 
@@ -110,34 +90,6 @@ impl<'a> Stresses<'a> {
     pub fn end(self) -> ([f64; 3], Smallest) {
         let smallest = (self.least.into_iter().map(Smallest)).fold(Smallest::default(), Sum::plus);
         (self.works.each_ref().map(lanes::sum), smallest)
-    }
-}
-
-impl Side {
-    /// Strains and rotations of the next cells.
-    fn find(
-        &mut self,
-        simd: Simd,
-        strains: &CellStrain,
-        smooth: bool,
-        nodes: &[[u32; 4]; LANES],
-        shared: &Shared,
-    ) {
-        self.smoothed = strains.volumetric;
-        if smooth {
-            smoothing::means(&mut self.smoothed, nodes, &shared.volumetric);
-        }
-        deform(simd, strains, self);
-    }
-}
-
-impl Default for Side {
-    fn default() -> Side {
-        Side {
-            smoothed: Lane::of(0.0),
-            strain: [Lane::of(0.0); 6],
-            turn: [Lane::of(0.0); 9],
-        }
     }
 }
 
@@ -222,24 +174,9 @@ fn growth(volumetric: f64) -> f64 {
 }
 
 for_each_simd! {
-    /// Strain and rotation of cells.
-    fn deform(own: &CellStrain, side: &mut Side) {
-        for l in 0..LANES {
-            let midpoint = midpoint(&Mat3::from_cols_array(&get(&own.gradient, l)));
-            let mut strain = tensor::strain(&midpoint);
-            let change = (side.smoothed[l] - own.volumetric[l]) / 3.0;
-            (0..3).for_each(|k| strain[k] += change);
-            set(&mut side.strain, l, strain);
-            set(&mut side.turn, l, tensor::spin_rotation(&midpoint).to_cols_array());
-        }
-    }
-}
-
-for_each_simd! {
     /// Turns stresses and gives each particle its strain.
     fn strain(
-        own: &CellStrain,
-        side: &Side,
+        own: &Deformation,
         points: &mut Points,
         arrays: &Arrays,
         start: usize,
@@ -251,12 +188,12 @@ for_each_simd! {
         load_one(&mut points.volume, volumes, start);
         points.volume[lanes..whole(lanes)].fill(0.0);
         for l in 0..whole(lanes) {
-            let turn = Mat3::from_cols_array(&get(&side.turn, l));
+            let turn = Mat3::from_cols_array(&get(&own.turn, l));
             let turned = tensor::rotate(&get(&points.increment.before, l), &turn);
             set(&mut points.increment.before, l, turned);
-            let mut strain = get(&side.strain, l);
+            let mut strain = get(&own.strain, l);
             let apart = points.separated[l];
-            let left_out = (own.volumetric[l] - side.smoothed[l]) * (1.0 / 3.0) * apart;
+            let left_out = (own.volumetric[l] - own.smoothed[l]) * (1.0 / 3.0) * apart;
             (0..3).for_each(|k| strain[k] += left_out);
             set(&mut points.increment.strain, l, strain);
         }
@@ -266,8 +203,7 @@ for_each_simd! {
 for_each_simd! {
     /// Changes volumes and books the work.
     fn book(
-        own: &CellStrain,
-        side: &Side,
+        own: &Deformation,
         points: &mut Points,
         works: &mut Works,
         least: &mut Lane,
@@ -276,7 +212,7 @@ for_each_simd! {
         let increment = &points.increment;
         for l in 0..whole(lanes) {
             let volumetric = own.volumetric[l];
-            let left_out = (volumetric - side.smoothed[l]) * (1.0 - points.separated[l]);
+            let left_out = (volumetric - own.smoothed[l]) * (1.0 - points.separated[l]);
             let growth = growth(volumetric - left_out);
             least[l] = either(growth < least[l], growth, least[l]);
             let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
@@ -292,7 +228,7 @@ for_each_simd! {
                 let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
                 let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]));
                 let left_out =
-                    (own.volumetric[l] - side.smoothed[l]) * (1.0 - points.separated[l]);
+                    (own.volumetric[l] - own.smoothed[l]) * (1.0 - points.separated[l]);
                 let volumetric = own.volumetric[l] - left_out;
                 // The volume is the new one by now.
                 let middle_volume = 0.5 * points.volume[l] * (1.0 + 1.0 / growth(volumetric));

@@ -3,12 +3,12 @@
 //! In a mesh that stays they are made at the end of the drift, while particles are at hand (`points.rs`); what that could
 //! not know, or all of it, is made up for here.
 
-use super::collect::{Share, Shares};
-use super::corners::{Corners, NO_CORNERS, all_corners, corner, load_nodes, set_corner};
-use super::correction::PAIRS;
+use super::collect::{Cut, Share, Shares};
+use super::corners::{Corners, NO_CORNERS, Quad, all_corners, corner, load_nodes, set_corner};
+use super::mass::PAIRS;
 use super::shapes::Shapes;
 use super::state::Summed;
-use super::{CellPairs, CellStress, CellSums, Reference, strain};
+use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference, strain};
 use crate::Vec3;
 use crate::lanes::{
     self, ByTile, Contents, LANES, Lane, Simd, VoigtLanes, alike, any, for_each_simd, get, load,
@@ -32,6 +32,11 @@ pub(super) struct Sums {
     of: Option<u16>,
     /// Σ m_p v_p N_i of each cell.
     momentum: Corners,
+    /// Σ m_p N_i.
+    mass: [Lane; 4],
+    /// Σ m_p N_i N_j of each pair of nodes, and of each node with itself.
+    pairs: [Lane; 6],
+    squares: [Lane; 4],
 }
 
 impl Default for Sums {
@@ -42,23 +47,27 @@ impl Default for Sums {
             elasticity: [Lane::of(0.0); 3],
             of: None,
             momentum: NO_CORNERS,
+            mass: [Lane::of(0.0); 4],
+            pairs: [Lane::of(0.0); 6],
+            squares: [Lane::of(0.0); 4],
         }
     }
 }
 
 /// The records of tiles.
-pub(super) type Arrays<'a> = (
-    &'a mut [CellSums],
-    &'a mut [CellPairs],
-    &'a mut [CellStress],
-);
+pub(super) type Arrays<'a> = (&'a mut [CellSums], Option<&'a mut [CellMedium]>);
 
 /// The records of a tile.
 pub(super) struct Records<'a> {
     pub sum: &'a mut CellSums,
-    pub pairs: &'a mut CellPairs,
-    pub stress: &'a mut CellStress,
+    pub medium: Option<&'a mut CellMedium>,
 }
+
+/// What nodes, and pairs of them, are given.
+pub(super) type Given<'a> = (Shares<'a, Quad, 2>, Shares<'a, f64, 1>);
+
+/// The same of one portion.
+pub(super) type Giving<'a> = (Share<'a, Quad, 2>, Share<'a, f64, 1>);
 
 /// Particles side by side. What counts for nothing has no mass and no volume.
 #[derive(Clone, Copy)]
@@ -75,34 +84,47 @@ pub(super) struct Counted<'a> {
 
 for_each_simd! {
     /// Adds a particle to each cell.
-    fn add(sums: &mut Sums, points: &Counted, records: &mut Records, lanes: usize) {
-        let Records { sum, pairs, stress } = records;
+    fn add(sums: &mut Sums, points: &Counted, sum: &mut CellSums, lanes: usize) {
         for l in 0..whole(lanes) {
             let n = get(points.shapes, l);
             let (m, v) = (points.mass[l], Vec3::from_array(get(points.velocity, l)));
+            let shares = n.map(|n| n * m);
             for i in 0..4 {
-                let share = n[i] * m;
-                sum.mass[i][l] += share;
-                let momentum = corner(&sums.momentum, l, i) + v * share;
+                sums.mass[i][l] += shares[i];
+                let momentum = corner(&sums.momentum, l, i) + v * shares[i];
                 set_corner(&mut sums.momentum, l, i, momentum);
+                sums.squares[i][l] += n[i] * shares[i];
             }
-            for k in 0..10 {
+            for k in 0..6 {
                 let (i, j) = PAIRS[k];
-                pairs[k][l] += n[i] * n[j] * m;
+                sums.pairs[k][l] += n[i] * shares[j];
             }
             let volume = points.volume[l];
             for k in 0..6 {
-                stress.stress[k][l] += points.stress[k][l] * volume;
+                sum.stress[k][l] += points.stress[k][l] * volume;
             }
+            sum.mass[l] += m;
             sum.volume[l] += volume;
             sum.solid[l] += volume * sums.shares[0][l];
-            stress.closed[l] += volume * sums.shares[1][l];
+            sum.closed[l] += volume * sums.shares[1][l];
+        }
+    }
+}
+
+for_each_simd! {
+    /// Adds what it is made of.
+    fn add_medium(sums: &Sums, points: &Counted, medium: &mut CellMedium, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let volume = points.volume[l];
             for k in 0..2 {
-                stress.moduli[k][l] += volume * sums.elasticity[k][l];
+                medium.moduli[k][l] += volume * sums.elasticity[k][l];
+            }
+            for i in 0..4 {
+                medium.shares[i][l] += points.shapes[i][l] * points.mass[l];
             }
         }
         for l in 0..lanes {
-            stress.wave_modulus[l] = stress.wave_modulus[l].max(sums.elasticity[2][l]);
+            medium.wave_modulus[l] = medium.wave_modulus[l].max(sums.elasticity[2][l]);
         }
     }
 }
@@ -121,27 +143,35 @@ impl Sums {
     #[inline]
     pub fn enter(&mut self, records: &mut Records) {
         *records.sum = CellSums::default();
-        *records.pairs = CellPairs::default();
-        *records.stress = CellStress::default();
+        if let Some(medium) = &mut records.medium {
+            **medium = CellMedium::default();
+        }
         self.momentum = NO_CORNERS;
+        self.mass = [Lane::of(0.0); 4];
+        self.pairs = [Lane::of(0.0); 6];
+        self.squares = [Lane::of(0.0); 4];
     }
 
     /// Adds the particles of a slot.
     #[inline]
     pub fn add(&mut self, asked: &Asked, points: &Counted, bodies: &[u16], records: &mut Records) {
         self.look_up(asked, points, bodies);
-        add(asked.simd, self, points, records, bodies.len());
+        add(asked.simd, self, points, records.sum, bodies.len());
+        let Some(medium) = &mut records.medium else {
+            return;
+        };
+        add_medium(asked.simd, self, points, medium, bodies.len());
         let Some(reference) = asked.reference else {
             return;
         };
         for (l, &body) in bodies.iter().enumerate() {
             let x = Vec3::from_array(get(points.position, l));
-            reference.add(records.stress, l, usize::from(body), x, points.volume[l]);
+            reference.add(medium, l, usize::from(body), x, points.volume[l]);
         }
     }
 
-    /// Puts together what lanes of the same cell have, and gives nodes Σ m_p v_p N_i, Σ m_p N_i, and of the whole cell
-    /// Σ V_p without what has opened and Σ m_p.
+    /// Gives nodes Σ m_p v_p N_i, Σ m_p N_i, Σ m_p N_i² and of the whole cell Σ V_p without what has opened and Σ m_p,
+    /// pairs of nodes Σ m_p N_i N_j, and puts together what lanes of the same cell have.
     #[inline]
     pub fn leave(
         &mut self,
@@ -149,29 +179,23 @@ impl Sums {
         tile: Contents,
         records: &mut Records,
         nodes: &[[u32; 4]; LANES],
-        share: &mut Share<2>,
+        pairs: &[[u32; 6]; LANES],
+        (to_nodes, to_pairs): &mut Giving,
     ) {
-        let Records { sum, pairs, stress } = records;
-        if !tile.helpers.is_empty() {
-            let lanes = (sum.lanes())
-                .chain(&mut self.momentum)
-                .chain(pairs.iter_mut())
-                .chain(stress.lanes());
-            tile.gather(lanes);
+        let sum = &mut *records.sum;
+        to_nodes.give(simd, nodes, &self.momentum, &self.mass);
+        let alike = [&sum.solid, &sum.mass];
+        to_nodes.give_alike(simd, nodes, alike, Some(&self.squares));
+        to_pairs.give_pairs(pairs, &self.pairs);
+        tile.gather(sum.lanes());
+        if let Some(medium) = &mut records.medium {
+            tile.gather(medium.lanes());
             for helper in tile.helpers {
                 let [from, to] = [helper.lane, helper.of].map(usize::from);
-                let moduli = &mut stress.wave_modulus;
+                let moduli = &mut medium.wave_modulus;
                 moduli[to] = moduli[to].max(moduli[from]);
             }
         }
-        share.give(simd, nodes, &self.momentum, &sum.mass);
-        let mut all = sum.mass[0];
-        for mass in &sum.mass[1..] {
-            all.iter_mut()
-                .zip(mass.iter())
-                .for_each(|(all, m)| *all += m);
-        }
-        share.give_alike(simd, nodes, [&sum.solid, &all]);
     }
 
     /// What materials say of the particles of a slot.
@@ -273,6 +297,40 @@ pub(super) fn run(sim: &mut Simulation, before: f64) {
     }
 }
 
+/// Whether what cells are made of has to be summed.
+pub(super) fn differs(elasticity: &[[f64; 3]], reference: Option<&Reference>) -> bool {
+    reference.is_some() || elasticity.windows(2).any(|two| two[0] != two[1])
+}
+
+/// The records of all tiles, what nodes and pairs collect, and how that is cut.
+pub(super) fn arrays(
+    cells: &mut Cells,
+    differs: bool,
+) -> (Arrays<'_>, Given<'_>, &[Shapes], &ConsistentMass, Cut) {
+    cells.keep_medium(differs);
+    let Cells {
+        shapes,
+        sums,
+        medium,
+        mass,
+        portions,
+        ..
+    } = cells;
+    let cut = portions.cut();
+    let medium = differs.then_some(&mut medium[..]);
+    let given = portions.all_shares();
+    ((&mut sums[..], medium), given, shapes, mass, cut)
+}
+
+/// The records of tiles, one after another.
+pub(super) fn each((sums, medium): Arrays) -> impl Iterator<Item = Records> {
+    let mut medium = medium.map(|medium| medium.iter_mut());
+    sums.iter_mut().map(move |sum| Records {
+        sum,
+        medium: medium.as_mut().and_then(|medium| medium.next()),
+    })
+}
+
 /// Returns half the work in the last drift, J, if it has `drifted`, of the particles in the cells that it has been to.
 fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
     let Simulation {
@@ -293,23 +351,17 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
         reference: reference.as_ref(),
         simd: *simd,
     };
-    let arrays = (
-        &mut cells.sums[..],
-        &mut cells.pairs[..],
-        &mut cells.stresses[..],
-    );
-    let cut = cells.portions.cut();
-    let shares = cells.portions.shares();
-    type All<'a> = (Arrays<'a>, Shares<'a, 2>, &'a [Shapes]);
-    let all = ByTile::new(&active.tiles, (), (arrays, shares, &cells.shapes[..]));
+    let differs = differs(elasticity, asked.reference);
+    let (arrays, given, shapes, mass, cut) = arrays(cells, differs);
+    type All<'a> = (Arrays<'a>, Given<'a>, &'a [Shapes]);
+    let all = ByTile::new(&active.tiles, (), (arrays, given, shapes));
     let work = |block: ByTile<(), All>| {
         let tiles = block.each();
-        let ((cell_sums, pairs, stresses), shares, shapes) = block.cells;
-        let (mut side, mut sums, mut share) = (Side::default(), Sums::default(), shares.begin());
+        let (arrays, (to_nodes, to_pairs), shapes) = block.cells;
+        let (mut side, mut sums) = (Side::default(), Sums::default());
+        let mut giving = (to_nodes.begin(), to_pairs.begin());
         let (mut moved, mut work) = (NO_CORNERS, Lane::of(0.0));
-        let arrays = cell_sums.iter_mut().zip(pairs).zip(stresses).zip(shapes);
-        for ((number, tile), (((sum, pairs), stress), shapes)) in tiles.zip(arrays) {
-            let mut records = Records { sum, pairs, stress };
+        for ((number, tile), (mut records, shapes)) in tiles.zip(each(arrays).zip(shapes)) {
             sums.enter(&mut records);
             for slot in tile.slots() {
                 fetch(
@@ -331,11 +383,11 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
                 };
                 sums.add(&asked, &points, &particles.body[slot], &mut records);
             }
-            let nodes = active.tile_nodes(number);
-            sums.leave(asked.simd, tile, &mut records, nodes, &mut share);
+            let (nodes, pairs) = (active.tile_nodes(number), mass.tile_pairs(number));
+            sums.leave(asked.simd, tile, &mut records, nodes, pairs, &mut giving);
             if drifted {
                 load_nodes(asked.simd, &mut moved, nodes, &shared.moved);
-                half_work(asked.simd, shapes, &moved, records.stress, &mut work);
+                half_work(asked.simd, shapes, &moved, records.sum, &mut work);
             }
         }
         lanes::sum(&work)
@@ -348,11 +400,11 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
 
 for_each_simd! {
     /// Half the work of the particles' stresses on what the last drift has done to their cells, J.
-    fn half_work(shapes: &Shapes, moved: &Corners, stress: &CellStress, work: &mut Lane) {
+    fn half_work(shapes: &Shapes, moved: &Corners, sum: &CellSums, work: &mut Lane) {
         for l in 0..LANES {
             let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
             let strain = tensor::strain(&gradient);
-            work[l] += 0.5 * tensor::dot(&get(&stress.stress, l), &strain);
+            work[l] += 0.5 * tensor::dot(&get(&sum.stress, l), &strain);
         }
     }
 }

@@ -1,11 +1,12 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
 use super::shapes::Shapes;
-use super::{CellForce, CellStress, CellSums, TILES, correction};
+use super::{CellFill, CellMedium, CellSums, Cells, TILES, correction};
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, either, for_each_simd, get};
+use crate::lanes::{LANES, Lane, either, for_each_simd};
 use crate::parallel::{Smallest, Sum, fold};
 use crate::simulation::Simulation;
+use std::ops::Range;
 
 /// A forced step that would be unstable, or a state that has none.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
@@ -74,69 +75,74 @@ pub(super) fn choose(sim: &mut Simulation) -> Result<f64, TimeStepError> {
 /// averaging can stiffen (`correction::stiffening`). Viscosity β lowers the step by
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
 pub(crate) fn critical(sim: &Simulation) -> f64 {
-    let Simulation { cells, simd, .. } = sim;
     let limits = Limits::of(sim);
-    let records = (
-        &cells.shapes[..],
-        (&cells.sums[..], &cells.stresses[..], &cells.forces[..]),
-    );
-    type Records<'a> = (
-        &'a [Shapes],
-        (&'a [CellSums], &'a [CellStress], &'a [CellForce]),
-    );
-    fold(
-        records,
-        TILES,
-        &|(shapes, (sums, stresses, forces)): Records| {
-            let mut smallest = Smallest::default();
-            let mut steps = Lane::of(0.0);
-            let records = shapes.iter().zip(sums).zip(stresses).zip(forces);
-            for (((shapes, sum), stress), force) in records {
-                times(*simd, &limits, shapes, sum, stress, force, &mut steps);
-                for &step in steps.iter() {
-                    smallest = smallest.plus(Smallest(step));
-                }
+    let own = 0..sim.active.own_tiles();
+    let steps = fold(own, TILES, &|tiles: Range<usize>| {
+        let (mut smallest, mut steps) = (Smallest::default(), Lane::of(0.0));
+        for tile in tiles {
+            find(sim, &limits, tile, &mut steps);
+            for &step in steps.iter() {
+                smallest = smallest.plus(Smallest(step));
             }
-            smallest
-        },
-    )
-    .0
+        }
+        smallest
+    });
+    steps.0
+}
+
+/// The stable steps of a tile's cells.
+fn find(sim: &Simulation, limits: &Limits, tile: usize, steps: &mut Lane) {
+    let Cells {
+        shapes,
+        sums,
+        medium,
+        fills,
+        ..
+    } = &sim.cells;
+    let (shapes, sum, fill) = (&shapes[tile], &sums[tile], &fills[tile]);
+    match medium.get(tile) {
+        None => times(sim.simd, limits, shapes, sum, &limits.alike, fill, steps),
+        Some(CellMedium { wave_modulus, .. }) => {
+            times(sim.simd, limits, shapes, sum, wave_modulus, fill, steps);
+        }
+    }
 }
 
 /// The middle of the element that has the shortest step.
 fn shortest_at(sim: &Simulation) -> Vec3 {
     let limits = Limits::of(sim);
-    let Simulation {
-        plan, cells, simd, ..
-    } = sim;
     let mut steps = Lane::of(0.0);
     let mut shortest = (f64::INFINITY, 0);
-    for tile in 0..cells.sums.len() {
-        let (shapes, sum) = (&cells.shapes[tile], &cells.sums[tile]);
-        let (stress, force) = (&cells.stresses[tile], &cells.forces[tile]);
-        times(*simd, &limits, shapes, sum, stress, force, &mut steps);
+    for tile in 0..sim.active.own_tiles() {
+        find(sim, &limits, tile, &mut steps);
         for (l, &step) in steps.iter().enumerate() {
             if step < shortest.0 {
                 shortest = (step, tile * LANES + l);
             }
         }
     }
-    plan.mesh.centroid(sim.active.elements[shortest.1] as usize)
+    sim.plan
+        .mesh
+        .centroid(sim.active.elements[shortest.1] as usize)
 }
 
 /// What all cells share.
 struct Limits {
     partly: f64,
     stiffest: f64,
+    /// The same for each cell, where all are alike.
+    alike: Lane,
     viscosity: f64,
 }
 
 impl Limits {
     fn of(sim: &Simulation) -> Limits {
         let numerics = &sim.plan.numerics;
+        let stiffest = sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max);
         Limits {
             partly: correction::stiffening(numerics.mass),
-            stiffest: sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max),
+            stiffest,
+            alike: Lane::of(stiffest),
             viscosity: numerics.viscosity,
         }
     }
@@ -148,16 +154,15 @@ for_each_simd! {
         limits: &Limits,
         shapes: &Shapes,
         sum: &CellSums,
-        stress: &CellStress,
-        force: &CellForce,
+        wave_modulus: &Lane,
+        fill: &CellFill,
         steps: &mut Lane,
     ) {
         for l in 0..LANES {
-            let modulus = either(sum.volume[l] > 0.0, stress.wave_modulus[l], limits.stiffest);
-            let mass = get(&sum.mass, l).iter().sum::<f64>();
-            let filled = force.filled[l] > 0.0;
-            let own = mass / (sum.solid[l] * limits.partly);
-            let density = either(filled, force.density[l], own);
+            let modulus = either(sum.volume[l] > 0.0, wave_modulus[l], limits.stiffest);
+            let filled = fill.filled[l] > 0.0;
+            let own = sum.mass[l] / (sum.solid[l] * limits.partly);
+            let density = either(filled, fill.density[l], own);
             let travel = shapes.altitude[l] / (modulus / density).sqrt();
             let xi = limits.viscosity / travel;
             let step = travel * ((1.0 + xi * xi).sqrt() - xi);

@@ -3,7 +3,8 @@
 use super::collect::{Share, Shares};
 use super::corners::{self, Corners, NO_CORNERS, Quad, all_corners, load_nodes, set_corner};
 use super::shapes::Shapes;
-use super::{Active, BLOCK, CellForce, CellStress, CellSums, Cells, Node, smoothing, strain, sums};
+use super::{Active, BLOCK, CellFill, CellForce, CellMedium, CellSums, Cells, Node};
+use super::{smoothing, strain, sums};
 use crate::lanes::{self, LANES, Lane, Simd, either, for_each_simd, get, lane_of, set};
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
@@ -39,23 +40,35 @@ fn sum_nodes(sim: &mut Simulation) {
         cells,
         ..
     } = sim;
+    cells.mass.collect(&cells.portions);
     let (active, portions, mesh) = (&*active, &cells.portions, &plan.mesh);
     let (walls, contacts) = (&*walls, &*contacts);
     let grid_nodes = walls.count(mesh) as u32;
-    let numbers = (&mut shared.filling[..], &mut shared.density[..]);
+    let numbers = (
+        &mut shared.filling[..],
+        &mut shared.density[..],
+        &mut cells.mass.diagonal[..],
+    );
     let items = (0..nodes.len(), &mut nodes[..], numbers);
-    type Numbers<'a> = (&'a mut [f64], &'a mut [f64]);
-    fold(items, BLOCK, &|(slots, nodes, (fillings, densities)): (
+    type Numbers<'a> = (&'a mut [f64], &'a mut [f64], &'a mut [f64]);
+    fold(items, BLOCK, &|(
+        slots,
+        nodes,
+        (fillings, densities, squares),
+    ): (
         Range<usize>,
         &mut [Node],
         Numbers,
     )| {
-        let mut quads = [[Quad::default(); BLOCK]; 2];
-        portions.sums(slots.clone(), &mut quads);
-        let numbers = fillings.iter_mut().zip(densities);
-        let sums = quads[0].iter().zip(&quads[1]);
-        for (((slot, node), sums), (filling, density)) in slots.zip(nodes).zip(sums).zip(numbers) {
-            let (&Quad([x, y, z, mass]), &Quad([volume, all_mass, ..])) = sums;
+        let (mut first, mut last) = ([Quad::default(); BLOCK], [Quad::default(); BLOCK]);
+        (portions.nodes).sums(slots.clone(), &mut [&mut first, &mut last]);
+        let numbers = fillings.iter_mut().zip(densities).zip(squares);
+        let sums = first.iter().zip(&last);
+        for (((slot, node), sums), ((filling, density), own)) in
+            slots.zip(nodes).zip(sums).zip(numbers)
+        {
+            let (&Quad([x, y, z, mass]), &Quad([volume, all_mass, square, _])) = sums;
+            *own = square;
             let momentum = Vec3::new(x, y, z);
             let grid = active.keys[slot] % grid_nodes;
             let mut whole = walls.volume(mesh, grid);
@@ -93,6 +106,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
         active,
         shared,
         cells,
+        elasticity,
         ledger,
         clock,
         reference,
@@ -111,49 +125,58 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
         0.0
     };
     debug_assert!(before == 0.0 || (2.0 * before - clock.dt).abs() <= 1e-12 * clock.dt);
+    // Else forces are pushed when their stresses have been smoothed.
+    let last = plan.numerics.smoothing != Smoothing::Conjugate;
+    cells.keep_forces(!last || viscosity > 0.0);
     let Cells {
         shapes,
         sums,
-        stresses,
+        medium,
+        fills,
         forces,
         portions,
         ..
     } = cells;
-    let (shapes, sums, stresses) = (&shapes[..], &sums[..], &stresses[..]);
-    // Else forces are pushed when their stresses have been smoothed.
-    let last = plan.numerics.smoothing != Smoothing::Conjugate;
-    // Whether anyone looks at stresses of cells afterwards.
-    let kept = !last || viscosity > 0.0;
+    let (shapes, sums, medium) = (&shapes[..], &sums[..], &medium[..]);
+    let alike = elasticity.first().map_or([0.0; 2], |e| [e[0], e[1]]);
+    let forces = (!forces.is_empty()).then_some(&mut forces[..]);
     let cut = portions.cut();
-    let items = (0..sums.len(), &mut forces[..], portions.shares());
-    let work = cut.fold(items, &|(range, forces, shares): (
+    let items = (0..sums.len(), &mut fills[..], (forces, portions.shares()));
+    type Out<'a> = (Option<&'a mut [CellForce]>, Shares<'a, Quad, 1>);
+    let work = cut.fold(items, &|(range, fills, (forces, shares)): (
         Range<usize>,
-        &mut [CellForce],
-        Shares<1>,
+        &mut [CellFill],
+        Out,
     )| {
         let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
         let (mut work, mut passing) = (Lane::of(0.0), CellForce::default());
-        for (tile, record) in range.zip(forces) {
+        let mut forces = forces.map(|forces| forces.iter_mut());
+        for (tile, fill) in active.without_guests(range).zip(fills) {
             let nodes = active.tile_nodes(tile);
-            let force = if kept { &mut *record } else { &mut passing };
+            let kept = forces.as_mut().and_then(|forces| forces.next());
+            let force = kept.unwrap_or(&mut passing);
             for l in 0..LANES {
                 let filled = mixed && active.is_cell[tile * LANES + l];
                 let filled = filled && is_filled(&nodes[l], &shared.filling);
-                force.filled[l] = f64::from(u8::from(filled));
+                fill.filled[l] = f64::from(u8::from(filled));
             }
-            corners::sum_nodes(&mut force.density, nodes, &shared.density);
-            let (shapes, sum, stress) = (&shapes[tile], &sums[tile], &stresses[tile]);
-            stand_in(simd, shapes, sum, stress, force);
+            corners::sum_nodes(&mut fill.density, nodes, &shared.density);
+            let (shapes, sum) = (&shapes[tile], &sums[tile]);
+            stand_in(simd, shapes, sum, fill, force);
+            if reference.is_some() {
+                force.weighed = medium[tile].shares;
+            }
             for l in 0..LANES {
-                if force.filled[l] == 0.0 || (sum.volume[l] > 0.0 && reference.is_none()) {
+                if fill.filled[l] == 0.0 || (sum.volume[l] > 0.0 && reference.is_none()) {
                     continue;
                 }
                 let c = tile * LANES + l;
                 let e = active.elements[c] as usize;
-                let around = around(c, active, mesh, sums, stresses);
+                let around = around(c, active, mesh, sums, medium);
                 let mean = match &reference {
                     Some(reference) => {
-                        let weighed = reference.weighed(mesh, e, get(&sum.mass, l), &around);
+                        let shares = get(&medium[tile].shares, l);
+                        let weighed = reference.weighed(mesh, e, shares, &around);
                         set(&mut force.weighed, l, weighed);
                         reference.mean_stress(mesh, e, &around)
                     }
@@ -163,17 +186,22 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             }
             if per_step > 0.0 {
                 load_nodes(simd, &mut moved, nodes, &shared.moved);
-                resist(
-                    simd, shapes, sum, stress, force, &moved, per_step, &mut work,
-                );
+                let moduli = match medium.get(tile) {
+                    Some(medium) => medium.moduli,
+                    None => alike.map(|m| times(m, &sum.volume)),
+                };
+                let cells = Resisting {
+                    shapes,
+                    sum,
+                    fill,
+                    moduli: &moduli,
+                };
+                resist(simd, &cells, force, &moved, per_step, &mut work);
             } else if viscosity > 0.0 {
                 force.viscous = [Lane::of(0.0); 6];
             }
             if last {
                 push(simd, shapes, force, nodes, &mut pushed, &mut share);
-            }
-            if !kept {
-                (record.filled, record.density) = (passing.filled, passing.density);
             }
         }
         lanes::sum(&work)
@@ -181,40 +209,48 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     ledger.viscous_work(work);
 }
 
+fn times(factor: f64, lane: &Lane) -> Lane {
+    Lane::from(lane.map(|x| factor * x))
+}
+
 for_each_simd! {
     /// The stress of cells of which the particles, and no others, decide.
-    fn stand_in(shapes: &Shapes, sum: &CellSums, stress: &CellStress, force: &mut CellForce) {
+    fn stand_in(shapes: &Shapes, sum: &CellSums, fill: &mut CellFill, force: &mut CellForce) {
         for l in 0..LANES {
-            let (filled, volume) = (force.filled[l] > 0.0, sum.volume[l]);
+            let (filled, volume) = (fill.filled[l] > 0.0, sum.volume[l]);
             for k in 0..6 {
-                let own = stress.stress[k][l];
+                let own = sum.stress[k][l];
                 let mean = own / volume;
                 force.stress[k][l] = either(filled, mean * shapes.volume[l], own);
             }
-            for i in 0..4 {
-                force.weighed[i][l] = sum.mass[i][l];
-            }
             force.smoothed[l] = 0.0;
-            force.density[l] *= 0.25;
+            fill.density[l] *= 0.25;
         }
     }
+}
+
+/// Cells side by side that resist by viscosity.
+struct Resisting<'a> {
+    shapes: &'a Shapes,
+    sum: &'a CellSums,
+    fill: &'a CellFill,
+    moduli: &'a [Lane; 2],
 }
 
 for_each_simd! {
     /// Viscous stresses, and half their work in the last drift; `per_step` is what a strain of it is multiplied by.
     fn resist(
-        shapes: &Shapes,
-        sum: &CellSums,
-        stress: &CellStress,
+        cells: &Resisting,
         force: &mut CellForce,
         moved: &Corners,
         per_step: f64,
         work: &mut Lane,
     ) {
+        let Resisting { shapes, sum, fill, moduli } = cells;
         for l in 0..LANES {
-            let full = (force.filled[l] > 0.0) & (sum.volume[l] > 0.0);
+            let full = (fill.filled[l] > 0.0) & (sum.volume[l] > 0.0);
             let fuller = either(full, shapes.volume[l] / sum.volume[l], 1.0);
-            let moduli = get(&stress.moduli, l).map(|m| m * per_step * fuller);
+            let moduli = get(moduli, l).map(|m| m * per_step * fuller);
             let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
             let viscous = viscous(&gradient, moduli);
             set(&mut force.viscous, l, viscous);
@@ -230,7 +266,7 @@ pub(super) fn push(
     force: &CellForce,
     nodes: &[[u32; 4]; LANES],
     pushed: &mut Corners,
-    share: &mut Share<1>,
+    share: &mut Share<Quad, 1>,
 ) {
     find_forces(simd, shapes, force, pushed);
     share.give(simd, nodes, pushed, &force.weighed);
@@ -262,7 +298,7 @@ pub(super) struct Around {
     pub stress: Voigt,
     /// Σ V_p, m³.
     pub volume: f64,
-    /// As [`CellStress::reference`].
+    /// As [`CellMedium::reference`].
     pub reference: [f64; 3],
 }
 
@@ -276,11 +312,13 @@ impl Around {
         }
     }
 
-    fn add(&mut self, l: usize, sum: &CellSums, stress: &CellStress) {
-        add_scaled(&mut self.stress, &get(&stress.stress, l), 1.0);
+    fn add(&mut self, l: usize, sum: &CellSums, medium: Option<&CellMedium>) {
+        add_scaled(&mut self.stress, &get(&sum.stress, l), 1.0);
         self.volume += sum.volume[l];
-        for (own, more) in self.reference.iter_mut().zip(get(&stress.reference, l)) {
-            *own += more;
+        if let Some(medium) = medium {
+            for (own, more) in self.reference.iter_mut().zip(get(&medium.reference, l)) {
+                *own += more;
+            }
         }
     }
 }
@@ -292,14 +330,12 @@ fn around(
     active: &Active,
     mesh: &Mesh,
     sums: &[CellSums],
-    stresses: &[CellStress],
+    medium: &[CellMedium],
 ) -> Around {
     let mut around = Around::default();
     let (tile, l) = lane_of(c);
     if sums[tile].volume[l] > 0.0 {
-        around.stress = get(&stresses[tile].stress, l);
-        around.volume = sums[tile].volume[l];
-        around.reference = get(&stresses[tile].reference, l);
+        around.add(l, &sums[tile], medium.get(tile));
         return around;
     }
     for &neighbour in mesh.neighbours[active.elements[c] as usize]
@@ -309,7 +345,7 @@ fn around(
         let other = active.cell(neighbour as usize, usize::from(active.fields[c]));
         if let Some(other) = other.filter(|&other| active.share_a_face(c, other)) {
             let (tile, l) = lane_of(other);
-            around.add(l, &sums[tile], &stresses[tile]);
+            around.add(l, &sums[tile], medium.get(tile));
         }
     }
     around

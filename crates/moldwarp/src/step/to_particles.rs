@@ -10,7 +10,7 @@
 //! when the next drift goes through them (`points.rs`), or as soon as anyone wants to see them ([`Simulation::settle`]).
 
 use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
-use super::correction::multiply;
+use super::correction::give;
 use super::shapes::Shapes;
 use super::{BLOCK, Node, strain};
 use crate::lanes::{
@@ -173,8 +173,8 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let h = before + after;
     let blend = -libm::expm1(-sim.plan.numerics.pic_rate * h);
     let first = sim.kinetic.take().unwrap_or_else(|| kinetic(sim));
-    multiply(sim, |node| node.received);
-    let [gain, square] = take(sim, |node, product| {
+    let received = |node: &Node| node.received;
+    let [gain, square] = exchange(sim, received, |node, product| {
         let works = [
             node.momentum().dot(node.received),
             product.dot(node.received),
@@ -191,8 +191,8 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
         for (grid, node) in sim.shared.grid.iter_mut().zip(&sim.nodes) {
             *grid = (node.velocity + node.received * h).into();
         }
-        multiply(sim, |node| node.velocity + node.received * h);
-        let [mixed, grid] = take(sim, |node, product| {
+        let grid = |node: &Node| node.velocity + node.received * h;
+        let [mixed, grid] = exchange(sim, grid, |node, product| {
             let own = node.velocity + node.received * h;
             let works = [node.mass * node.average.dot(own), product.dot(own)];
             if node.mass > 0.0 {
@@ -217,18 +217,27 @@ impl Node {
 }
 
 /// Calls `work` on each node with Σ_j M_ij w_j, and adds up what it says.
-fn take(sim: &mut Simulation, work: impl Fn(&mut Node, Vec3) -> [f64; 2] + Sync) -> [f64; 2] {
-    let portions = &sim.cells.portions;
-    let items = (0..sim.nodes.len(), &mut sim.nodes[..]);
+fn exchange(
+    sim: &mut Simulation,
+    w: impl Fn(&Node) -> Vec3 + Sync,
+    work: impl Fn(&mut Node, Vec3) -> [f64; 2] + Sync,
+) -> [f64; 2] {
+    let Simulation {
+        nodes,
+        shared,
+        cells,
+        ..
+    } = sim;
+    give(nodes, &mut shared.given, w);
+    let (given, matrix) = (&shared.given[..], &cells.mass);
+    let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let mut products = [[Quad::default(); BLOCK]];
-        portions.sums(slots, &mut products);
         let mut all = [0.0; 2];
-        for (node, product) in nodes.iter_mut().zip(&products[0]) {
-            let works = work(node, product.vector());
+        for (slot, node) in slots.zip(nodes) {
+            let works = work(node, matrix.product(slot, given));
             (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
         }
         all

@@ -5,12 +5,13 @@
 //! the pass then finds their answers where it would call another model. Works and volumes it books as
 //! for any other.
 
-use super::{Arrays, Points, Side, strain};
+use super::super::strain::Deformation;
+use super::{Arrays, Points, strain};
 use crate::lanes::{ByTile, load, store};
 use crate::material::{External, Increments, Material, Strained};
 use crate::parallel::fold;
 use crate::particles::{Particles, States, Tensors};
-use crate::plan::{Plan, Smoothing};
+use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::step::TILES;
 use crate::stop::Stop;
@@ -232,10 +233,10 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         simd,
         ..
     } = sim;
-    let (active, shared, strains, simd) = (&*active, &*shared, &cells.strains[..], *simd);
+    let (active, shared, shapes, simd) = (&*active, &*shared, &cells.shapes[..], *simd);
     let (materials, bodies, body) = (&plan.materials, &plan.bodies, &particles.body);
     let model = |body: u16| &materials[bodies[usize::from(body)].material].model;
-    let smooth = plan.numerics.smoothing != Smoothing::Off;
+    let smoothing = plan.numerics.smoothing;
     let arrays: Arrays = (
         particles.stress.components_mut(),
         particles.state.components_mut(),
@@ -253,11 +254,16 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         let tiles = block.each();
         let (arrays, (mut before, mut increment, stress)) = block.particles;
         stress.into_iter().for_each(|s| s.fill(f64::NAN));
-        let mut side = Side::default();
+        let mut own = Deformation::default();
         let mut points = Points::default();
         for (number, tile) in tiles {
-            let (own, nodes) = (&strains[number], active.tile_nodes(number));
-            side.find(simd, own, smooth, nodes, shared);
+            own.enter(
+                simd,
+                &shapes[number],
+                active.tile_nodes(number),
+                shared,
+                smoothing,
+            );
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let body = &body[slot];
@@ -268,7 +274,7 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
                     continue;
                 }
                 points.look_up(body, model, &arrays, start);
-                strain(simd, own, &side, &mut points, &arrays, start, lanes);
+                strain(simd, &own, &mut points, &arrays, start, lanes);
                 store(&points.increment.before, &mut before, start, lanes);
                 store(&points.increment.strain, &mut increment, start, lanes);
             }

@@ -204,15 +204,6 @@ pub fn prefetch_bodies(bodies: &[u16], start: usize) {
     prefetch_line(bodies.as_ptr().wrapping_add(start));
 }
 
-/// The same for a record.
-#[inline(always)]
-pub fn prefetch_record<T>(records: &[T], number: usize) {
-    let record = records.as_ptr().wrapping_add(number).cast::<u8>();
-    for line in 0..size_of::<T>() / 64 {
-        prefetch_line(record.wrapping_add(64 * line));
-    }
-}
-
 /// Copies the first numbers of lanes to the particles from `start` on.
 #[inline(always)]
 pub fn store<const N: usize>(

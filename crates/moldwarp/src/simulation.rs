@@ -289,7 +289,8 @@ impl Simulation {
             }
         }
         self.shared.renew(&self.nodes);
-        self.cells.renew(&self.active, &self.plan.mesh);
+        self.shared.place(&self.active, &self.plan.mesh);
+        self.cells.renew(&self.active);
         if self.may_have_guests() {
             let tiles = Guests::most_tiles(self.particles.len());
             self.guests.make_room(&mut self.particles);

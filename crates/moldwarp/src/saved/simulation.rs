@@ -241,6 +241,7 @@ impl Simulation {
             fills,
             forces,
             mass,
+            shortest,
             ..
         } = kick;
         self.cells.sums = sums;
@@ -248,6 +249,7 @@ impl Simulation {
         self.cells.fills = fills;
         self.cells.forces = forces;
         self.cells.mass.values = mass.values;
+        self.cells.shortest = shortest;
         Ok(())
     }
 }

@@ -81,19 +81,18 @@ impl crate::saved::Saved for Cells {
     fn size(&self) -> usize {
         let mass = self.mass.values.size();
         let (sums, medium) = (self.sums.size(), self.medium.size());
-        mass + sums + medium + self.fills.size() + self.forces.size()
+        mass + sums + medium + self.fills.size() + self.forces.size() + self.shortest.size()
     }
 
     fn save(&self, out: &mut crate::saved::Out) {
         let Cells {
-            // Those of the mesh.
-            shapes: _,
             sums,
             medium,
             fills,
             forces,
             mass,
             portions: _,
+            shortest,
             // Made anew.
             summed: _,
             worked: _,
@@ -103,6 +102,7 @@ impl crate::saved::Saved for Cells {
         fills.save(out);
         forces.save(out);
         mass.values.save(out);
+        shortest.save(out);
     }
 
     fn load(from: &mut crate::saved::Bytes) -> Result<Cells, crate::saved::Broken> {
@@ -114,6 +114,7 @@ impl crate::saved::Saved for Cells {
             ..Cells::default()
         };
         cells.mass.values = Vec::load(from)?;
+        cells.shortest = f64::load(from)?;
         Ok(cells)
     }
 }

@@ -23,7 +23,7 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     }
     if !stays {
         move_mesh(sim)?;
-        sim.cells.find_shapes(&sim.active, &sim.plan.mesh);
+        sim.shared.place(&sim.active, &sim.plan.mesh);
         sim.profile.lap(Part::Mesh);
         crossing = locate(sim);
         sim.profile.lap(Part::Locate);
@@ -77,7 +77,7 @@ fn locate(sim: &mut Simulation) -> Crossing {
         plan,
         particles,
         active,
-        cells,
+        shared,
         fields,
         contacts,
         outflow,
@@ -93,16 +93,25 @@ fn locate(sim: &mut Simulation) -> Crossing {
     };
     let (active, position, simd) = (&*active, particles.position.components(), *simd);
     let elements = &mut particles.element[..];
-    let all = ByTile::new(&active.tiles, elements, &cells.shapes[..]);
-    fold(all, TILES, &|block: ByTile<&mut [u32], &[Shapes]>| {
+    let places = &shared.places[..];
+    let all = ByTile::new(&active.tiles, elements, ());
+    fold(all, TILES, &|block: ByTile<&mut [u32], ()>| {
         let first = block.first();
-        let tiles = block.each().zip(block.cells);
+        let tiles = block.each();
         let elements = block.particles;
-        let mut motion = Motion::default();
+        let (mut motion, mut shapes) = (Motion::default(), Shapes::default());
         let mut crossing = Crossing::default();
-        for ((_, tile), shapes) in tiles {
+        for (number, tile) in tiles {
+            shapes.enter(simd, active.tile_nodes(number), places);
             for slot in tile.slots() {
-                look(simd, &mut motion, shapes, &position, slot.start, slot.len());
+                look(
+                    simd,
+                    &mut motion,
+                    &shapes,
+                    &position,
+                    slot.start,
+                    slot.len(),
+                );
                 let own = &mut elements[slot.start - first..];
                 motion.search(&search, slot, own, &mut crossing, |_| ());
             }

@@ -181,7 +181,6 @@ impl Simulation {
     /// one is where there is no cell.
     pub(crate) fn regroup(&mut self) -> bool {
         let Simulation {
-            plan,
             particles,
             order,
             active,
@@ -216,7 +215,7 @@ impl Simulation {
         active.invite(&guests.cells, |rank, place| {
             homes[(place - first) as usize] = found[rank as usize].1;
         });
-        cells.renew_guests(active, &plan.mesh);
+        cells.renew_guests(active);
         true
     }
 

@@ -5,12 +5,13 @@
 //! them.
 
 use super::motion::{self, Crossing, Motion, Search, go_along};
+use super::shapes::Shapes;
 use super::state::Summed;
 use super::strain::{Deformation, own_work};
 use super::stress::{Arrays as Stressed, Stresses};
 use super::sums::{self, Arrays as SumArrays, Asked, Counted, Given as Sharing, Sums};
 use super::to_particles::{Before, Given, Kick};
-use crate::lanes::{self, ByTile, Lane, load, prefetch, prefetch_bodies, prefetch_record, store};
+use crate::lanes::{self, ByTile, Lane, load, prefetch, prefetch_bodies, store};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
@@ -80,7 +81,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     let arrays: Arrays = (stressed, vectors, &mut element[..]);
     let smoothing = plan.numerics.smoothing;
     let differs = sums::differs(elasticity, asked.reference);
-    let (records, sharing, shapes, pairs, cut) = sums::arrays(cells, differs);
+    let (records, sharing, pairs, cut) = sums::arrays(cells, differs);
     let all = ByTile::new(&active.tiles, arrays, (records, sharing));
     let work = |block: ByTile<Arrays, (SumArrays, Sharing)>| {
         let first = block.first();
@@ -88,7 +89,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut stressed, (mut position, mut velocity), elements) = block.particles;
         let (records, (to_nodes, to_pairs)) = block.cells;
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
-        let mut sums = Sums::default();
+        let (mut shapes, mut sums) = (Shapes::default(), Sums::default());
         let mut giving = (to_nodes.begin(), to_pairs.begin());
         let (mut kick, mut speeds) = (Kick::default(), [Lane::of(0.0); 3]);
         let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
@@ -96,11 +97,10 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut begun, mut ended) = (Lane::of(0.0), [Lane::of(0.0); 2]);
         for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
             let nodes = active.tile_nodes(number);
-            prefetch_record(shapes, number + 1);
-            let shapes = &shapes[number];
-            deformation.enter(simd, shapes, nodes, shared, smoothing);
+            shapes.enter(simd, nodes, &shared.places);
+            deformation.enter(simd, &shapes, nodes, shared, smoothing);
             own_work(simd, &deformation, records.sum, &mut begun);
-            kick.enter(simd, &given, nodes, shapes);
+            kick.enter(simd, &given, nodes, &shapes);
             if stays {
                 sums.enter(&mut records);
             }
@@ -129,13 +129,13 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     position: &motion.position,
                     mass: &motion.mass,
                 };
-                kick.give(simd, &given, &before, &mut speeds, shapes, lanes);
+                kick.give(simd, &given, &before, &mut speeds, &shapes, lanes);
                 store(&speeds, &mut velocity, start, lanes);
                 stress.update(&deformation, slot.clone(), bodies, &mut stressed, first);
                 go_along(
                     simd,
                     &mut motion,
-                    shapes,
+                    &shapes,
                     &deformation,
                     gravity,
                     &mut position,

@@ -1,54 +1,57 @@
 //! Shape functions of cells side by side.
+//!
+//! They are found anew wherever they are needed: their numbers would take longer to come from memory than the places of
+//! the nodes, which the cache holds, take to make them.
 
+use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
 use crate::Vec3;
-use crate::lanes::{Lane, get, set};
-use crate::mesh::{Mesh, NONE, barycentric, shortest_altitude};
+use crate::lanes::{LANES, Lane, Simd, for_each_simd, get, set};
+use crate::mesh::{barycentric, tetrahedron_gradients};
 
-/// What the shape functions of elements are made of. All zero where there is no element.
-#[derive(Clone, Debug)]
+/// What the shape functions of cells are made of.
 pub struct Shapes {
+    places: Corners,
     /// Node 0.
     origin: [Lane; 3],
     /// ∇N₁, ∇N₂, ∇N₃.
     gradients: [Lane; 9],
     /// Volume, m³.
     pub volume: Lane,
-    /// Shortest altitude, m.
-    pub altitude: Lane,
 }
 
 impl Default for Shapes {
     fn default() -> Shapes {
         Shapes {
+            places: NO_CORNERS,
             origin: [Lane::of(0.0); 3],
             gradients: [Lane::of(0.0); 9],
             volume: Lane::of(0.0),
-            altitude: Lane::of(0.0),
+        }
+    }
+}
+
+for_each_simd! {
+    fn find(shapes: &mut Shapes) {
+        for l in 0..LANES {
+            let corners = all_corners(&shapes.places, l);
+            let (gradients, volume) = tetrahedron_gradients(corners);
+            set(&mut shapes.origin, l, corners[0].to_array());
+            for (i, g) in gradients.iter().enumerate() {
+                for (k, g) in g.to_array().into_iter().enumerate() {
+                    shapes.gradients[3 * i + k][l] = g;
+                }
+            }
+            shapes.volume[l] = volume;
         }
     }
 }
 
 impl Shapes {
-    /// Of these elements.
-    pub(super) fn load(&mut self, mesh: &Mesh, elements: &[u32]) {
-        for (l, &e) in elements.iter().enumerate() {
-            if e == NONE {
-                set(&mut self.origin, l, [0.0; 3]);
-                set(&mut self.gradients, l, [0.0; 9]);
-                (self.volume[l], self.altitude[l]) = (0.0, 0.0);
-                continue;
-            }
-            let e = e as usize;
-            let origin = mesh.nodes[mesh.tets[e][0] as usize];
-            set(&mut self.origin, l, origin.to_array());
-            let gradients = mesh.gradients(e);
-            for (i, g) in gradients.iter().enumerate() {
-                for (k, g) in g.to_array().into_iter().enumerate() {
-                    self.gradients[3 * i + k][l] = g;
-                }
-            }
-            (self.volume[l], self.altitude[l]) = (mesh.volumes[e], shortest_altitude(&gradients));
-        }
+    /// Goes to cells with these nodes; `places` are those of all nodes.
+    #[inline]
+    pub(super) fn enter(&mut self, simd: Simd, nodes: &[[u32; 4]; LANES], places: &[Quad]) {
+        load_nodes(simd, &mut self.places, nodes, places);
+        find(simd, self);
     }
 
     /// ∇N₁, ∇N₂, ∇N₃ of an element.

@@ -24,7 +24,8 @@
 
 use super::collect::{Portions, Shares};
 use super::corners::{NO_CORNERS, Quad, all_corners, load_nodes, sum_nodes};
-use super::{BLOCK, CellForce, Cells, strain, to_nodes};
+use super::shapes::Shapes;
+use super::{BLOCK, CellForce, Cells, Shared, strain, to_nodes};
 use crate::lanes::{LANES, Lane, either, get};
 use crate::parallel::fold;
 use crate::plan::Smoothing;
@@ -85,23 +86,24 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         ..
     } = sim;
     let (active, simd) = (&*active, *simd);
+    let Shared {
+        places,
+        mean_stress,
+        moved: drift,
+        ..
+    } = shared;
+    let places = &places[..];
     let Cells {
-        shapes,
         sums,
         fills,
         forces,
         portions,
         ..
     } = cells;
-    let (shapes, sums, fills) = (&shapes[..], &sums[..], &fills[..]);
-    let weight = |tile: usize, l: usize| {
+    let (sums, fills) = (&sums[..], &fills[..]);
+    let weight = |tile: usize, l: usize, shapes: &Shapes| {
         let (volume, closed) = (sums[tile].volume[l], sums[tile].closed[l]);
-        weight(
-            fills[tile].filled[l],
-            volume,
-            closed,
-            shapes[tile].volume[l],
-        )
+        weight(fills[tile].filled[l], volume, closed, shapes.volume[l])
     };
     let (cut, known) = (portions.cut(), &forces[..]);
     let items = (0..known.len(), portions.shares());
@@ -110,19 +112,20 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         Shares<Quad, 1>,
     )| {
         let (mut traces, mut weights) = (Lane::of(0.0), Lane::of(0.0));
-        let mut share = shares.begin();
+        let (mut shapes, mut share) = (Shapes::default(), shares.begin());
         for tile in active.without_guests(tiles) {
-            let force = &known[tile];
+            let (force, nodes) = (&known[tile], active.tile_nodes(tile));
+            shapes.enter(simd, nodes, places);
             for l in 0..LANES {
                 traces[l] = tensor::trace(&get(&force.stress, l));
-                weights[l] = weight(tile, l);
+                weights[l] = weight(tile, l, &shapes);
             }
-            share.give_alike(simd, active.tile_nodes(tile), [&traces, &weights], None);
+            share.give_alike(simd, nodes, [&traces, &weights], None);
         }
     });
     // q_n: a trace is three times the mean, and a quarter goes to each node.
-    means_at_nodes(portions, &mut shared.mean_stress, 12.0);
-    let shared = &*shared;
+    means_at_nodes(portions, mean_stress, 12.0);
+    let (mean_stress, drift) = (&mean_stress[..], &drift[..]);
     let items = (0..forces.len(), &mut forces[..], portions.shares());
     let work = cut.fold(items, &|(tiles, forces, shares): (
         Range<usize>,
@@ -130,24 +133,25 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         Shares<Quad, 1>,
     )| {
         let (mut work, mut moved, mut pushed) = (0.0, NO_CORNERS, NO_CORNERS);
-        let (mut means, mut share) = (Lane::of(0.0), shares.begin());
+        let (mut means, mut shapes) = (Lane::of(0.0), Shapes::default());
+        let mut share = shares.begin();
         for (tile, force) in active.without_guests(tiles).zip(forces) {
             let nodes = active.tile_nodes(tile);
-            sum_nodes(&mut means, nodes, &shared.mean_stress);
-            load_nodes(simd, &mut moved, nodes, &shared.moved);
+            shapes.enter(simd, nodes, places);
+            sum_nodes(&mut means, nodes, mean_stress);
+            load_nodes(simd, &mut moved, nodes, drift);
             for l in (0..LANES).filter(|&l| active.is_cell[tile * LANES + l]) {
                 let own = tensor::trace(&get(&force.stress, l)) / 3.0;
-                let added = means[l] * weight(tile, l) - own;
+                let added = means[l] * weight(tile, l, &shapes) - own;
                 force.smoothed[l] = added;
                 (0..3).for_each(|k| force.stress[k][l] += added);
                 if before > 0.0 {
-                    let gradients = shapes[tile].gradients(l);
+                    let gradients = shapes.gradients(l);
                     let gradient = strain::gradient(&gradients, all_corners(&moved, l));
                     work += 0.5 * added * tensor::trace(&tensor::strain(&gradient));
                 }
             }
-            let shapes = &shapes[tile];
-            to_nodes::push(simd, shapes, force, nodes, &mut pushed, &mut share);
+            to_nodes::push(simd, &shapes, force, nodes, &mut pushed, &mut share);
         }
         work
     });

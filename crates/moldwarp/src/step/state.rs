@@ -1,15 +1,12 @@
 //! What the step keeps per node and per cell.
 
+use super::Active;
 use super::collect::Portions;
 use super::corners::Quad;
 use super::mass::ConsistentMass;
-use super::shapes::Shapes;
-use super::{Active, TILES};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, VoigtLanes, lane_of};
 use crate::mesh::Mesh;
-use crate::parallel::fold;
-use std::ops::Range;
 
 /// A node that particles touch. Forces in N, work in J.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,6 +51,8 @@ pub struct Shared {
     pub volumetric: Vec<f64>,
     /// A quarter of the averaged mean stress of the attached cells, Pa.
     pub mean_stress: Vec<f64>,
+    /// Where nodes are, m.
+    pub places: Vec<Quad>,
     /// Δu_i of the last drift, m.
     pub moved: Vec<Quad>,
     /// What nodes exchange: accelerations or velocities.
@@ -81,6 +80,13 @@ impl Shared {
         self.moved.clear();
         self.moved
             .extend(nodes.iter().map(|node| Quad::from(node.moved)));
+    }
+
+    /// Nodes are where the mesh is now.
+    pub(crate) fn place(&mut self, active: &Active, mesh: &Mesh) {
+        self.places.clear();
+        let nodes = active.nodes.iter().map(|&n| mesh.nodes[n as usize]);
+        self.places.extend(nodes.map(Quad::from));
     }
 }
 
@@ -137,7 +143,6 @@ pub struct CellForce {
 /// What the step keeps per cell, one record a tile.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
-    pub shapes: Vec<Shapes>,
     pub sums: Vec<CellSums>,
     /// None, if all bodies are alike.
     pub medium: Vec<CellMedium>,
@@ -147,6 +152,8 @@ pub struct Cells {
     pub mass: ConsistentMass,
     /// What nodes collect.
     pub portions: Portions,
+    /// The shortest stable time step of a cell, s.
+    pub shortest: f64,
     /// Whose sums the last drift has made.
     pub summed: Summed,
     /// Half the work of the particles' stresses in the last drift as far as sums are made: of cells without guests, and
@@ -234,17 +241,15 @@ impl Default for CellForce {
 
 impl Cells {
     /// Of these cells.
-    pub(crate) fn renew(&mut self, active: &Active, mesh: &Mesh) {
+    pub(crate) fn renew(&mut self, active: &Active) {
         self.resize(active);
         self.mass.renew(&active.cell_nodes, active.nodes.len());
         (self.portions).renew(&active.cell_nodes, active.own_tiles(), &self.mass);
         self.summed = Summed::Nothing;
-        self.find_shapes(active, mesh);
     }
 
     fn resize(&mut self, active: &Active) {
         let tiles = active.tiles.len();
-        self.shapes.resize_with(tiles, Shapes::default);
         self.sums.resize_with(tiles, CellSums::default);
         self.fills.resize_with(tiles, CellFill::default);
         self.keep_medium(!self.medium.is_empty());
@@ -263,7 +268,6 @@ impl Cells {
 
     /// Room for guests. A portion of theirs may have all nodes.
     pub(crate) fn make_room(&mut self, tiles: usize, nodes: usize) {
-        self.shapes.reserve(tiles);
         self.sums.reserve(tiles);
         self.fills.reserve(tiles);
         self.keep_medium(!self.medium.is_empty());
@@ -273,17 +277,13 @@ impl Cells {
     }
 
     /// The same after guests have been laid out anew.
-    pub(crate) fn renew_guests(&mut self, active: &Active, mesh: &Mesh) {
+    pub(crate) fn renew_guests(&mut self, active: &Active) {
         self.resize(active);
         self.mass
             .renew_guests(active.own_tiles() * LANES, active.guest_pairs());
         (self.portions).renew_guests(&active.cell_nodes, &self.mass);
         if self.summed == Summed::All {
             self.summed = Summed::Own;
-        }
-        for tile in active.guest_lanes().start / LANES..active.tiles.len() {
-            let elements = &active.elements[tile * LANES..(tile + 1) * LANES];
-            self.shapes[tile].load(mesh, elements);
         }
     }
 
@@ -303,20 +303,6 @@ impl Cells {
         }
         let (own, guest) = (&mut medium[to].wave_modulus, &guests[0].wave_modulus);
         own[b] = own[b].max(guest[a]);
-    }
-
-    /// Shape functions in the mesh as it is now.
-    pub(crate) fn find_shapes(&mut self, active: &Active, mesh: &Mesh) {
-        let items = (0..self.shapes.len(), &mut self.shapes[..]);
-        fold(items, TILES, &|(tiles, shapes): (
-            Range<usize>,
-            &mut [Shapes],
-        )| {
-            for (tile, shapes) in tiles.zip(shapes) {
-                let elements = &active.elements[tile * LANES..(tile + 1) * LANES];
-                shapes.load(mesh, elements);
-            }
-        });
     }
 
     /// Σ V_p of a cell, m³.

@@ -169,14 +169,13 @@ fn gradients(sim: &mut Simulation) {
     } = sim;
     let (active, shared, simd) = (&*active, &*shared, *simd);
     let Cells {
-        shapes,
         sums,
         fills,
         forces,
         portions,
         ..
     } = cells;
-    let (shapes, sums) = (&shapes[..], &sums[..]);
+    let sums = &sums[..];
     let (fills, forces) = (&fills[..], &forces[..]);
     let cut = portions.cut();
     let items = (0..sums.len(), portions.shares());
@@ -184,20 +183,21 @@ fn gradients(sim: &mut Simulation) {
         Range<usize>,
         Shares<Quad, 1>,
     )| {
-        let (mut moved, mut share) = (NO_CORNERS, shares.begin());
+        let (mut moved, mut shapes) = (NO_CORNERS, Shapes::default());
+        let mut share = shares.begin();
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
         for tile in active.without_guests(tiles) {
             let nodes = active.tile_nodes(tile);
             load_nodes(simd, &mut moved, nodes, &shared.moved);
-            let shapes = &shapes[tile];
+            shapes.enter(simd, nodes, &shared.places);
             let weighed = Weighed {
-                shapes,
+                shapes: &shapes,
                 sum: &sums[tile],
                 fill: &fills[tile],
             };
             weigh(simd, &weighed, &moved, &mut weights);
             if let Some(force) = forces.get(tile) {
-                more_work(simd, shapes, &moved, force, &mut works);
+                more_work(simd, &shapes, &moved, force, &mut works);
             }
             share.give_alike(simd, nodes, weights.each_ref(), None);
         }

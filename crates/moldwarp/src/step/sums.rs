@@ -306,10 +306,9 @@ pub(super) fn differs(elasticity: &[[f64; 3]], reference: Option<&Reference>) ->
 pub(super) fn arrays(
     cells: &mut Cells,
     differs: bool,
-) -> (Arrays<'_>, Given<'_>, &[Shapes], &ConsistentMass, Cut) {
+) -> (Arrays<'_>, Given<'_>, &ConsistentMass, Cut) {
     cells.keep_medium(differs);
     let Cells {
-        shapes,
         sums,
         medium,
         mass,
@@ -319,7 +318,7 @@ pub(super) fn arrays(
     let cut = portions.cut();
     let medium = differs.then_some(&mut medium[..]);
     let given = portions.all_shares();
-    ((&mut sums[..], medium), given, shapes, mass, cut)
+    ((&mut sums[..], medium), given, mass, cut)
 }
 
 /// The records of tiles, one after another.
@@ -352,16 +351,19 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
         simd: *simd,
     };
     let differs = differs(elasticity, asked.reference);
-    let (arrays, given, shapes, mass, cut) = arrays(cells, differs);
-    type All<'a> = (Arrays<'a>, Given<'a>, &'a [Shapes]);
-    let all = ByTile::new(&active.tiles, (), (arrays, given, shapes));
+    let (arrays, given, mass, cut) = arrays(cells, differs);
+    type All<'a> = (Arrays<'a>, Given<'a>);
+    let all = ByTile::new(&active.tiles, (), (arrays, given));
     let work = |block: ByTile<(), All>| {
         let tiles = block.each();
-        let (arrays, (to_nodes, to_pairs), shapes) = block.cells;
+        let (arrays, (to_nodes, to_pairs)) = block.cells;
         let (mut side, mut sums) = (Side::default(), Sums::default());
         let mut giving = (to_nodes.begin(), to_pairs.begin());
         let (mut moved, mut work) = (NO_CORNERS, Lane::of(0.0));
-        for ((number, tile), (mut records, shapes)) in tiles.zip(each(arrays).zip(shapes)) {
+        let mut shapes = Shapes::default();
+        for ((number, tile), mut records) in tiles.zip(each(arrays)) {
+            let (nodes, pairs) = (active.tile_nodes(number), mass.tile_pairs(number));
+            shapes.enter(asked.simd, nodes, &shared.places);
             sums.enter(&mut records);
             for slot in tile.slots() {
                 fetch(
@@ -369,7 +371,7 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
                     &mut side,
                     particles,
                     slot.start,
-                    shapes,
+                    &shapes,
                     slot.len(),
                 );
                 let points = Counted {
@@ -383,11 +385,10 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
                 };
                 sums.add(&asked, &points, &particles.body[slot], &mut records);
             }
-            let (nodes, pairs) = (active.tile_nodes(number), mass.tile_pairs(number));
             sums.leave(asked.simd, tile, &mut records, nodes, pairs, &mut giving);
             if drifted {
                 load_nodes(asked.simd, &mut moved, nodes, &shared.moved);
-                half_work(asked.simd, shapes, &moved, records.sum, &mut work);
+                half_work(asked.simd, &shapes, &moved, records.sum, &mut work);
             }
         }
         lanes::sum(&work)

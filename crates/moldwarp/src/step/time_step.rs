@@ -1,12 +1,13 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
 use super::shapes::Shapes;
-use super::{CellFill, CellMedium, CellSums, Cells, TILES, correction};
+use super::{CellFill, CellMedium, CellSums, correction};
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, either, for_each_simd};
-use crate::parallel::{Smallest, Sum, fold};
+use crate::lanes::{LANES, Lane, Simd, either, for_each_simd};
+use crate::mesh::shortest_altitude;
+use crate::parallel::{Smallest, Sum};
+use crate::plan::Numerics;
 use crate::simulation::Simulation;
-use std::ops::Range;
 
 /// A forced step that would be unstable, or a state that has none.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
@@ -68,66 +69,85 @@ pub(super) fn choose(sim: &mut Simulation) -> Result<f64, TimeStepError> {
     }
 }
 
+/// The stable steps of cells at their Courant number 1.
+///
 /// min h_e / c_e over all cells, s: h_e the shortest altitude, c_e the fastest P-wave speed
 /// present. In a filled cell the density is the nodes' (mass over element volume), since a full
 /// element that happens to hold few particles is as stiff as any; elsewhere stiffness and mass
 /// fade together and the particles' own density counts (without what has opened in tension), lowered by what the correction for
 /// averaging can stiffen (`correction::stiffening`). Viscosity β lowers the step by
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
-pub(crate) fn critical(sim: &Simulation) -> f64 {
-    let limits = Limits::of(sim);
-    let own = 0..sim.active.own_tiles();
-    let steps = fold(own, TILES, &|tiles: Range<usize>| {
-        let (mut smallest, mut steps) = (Smallest::default(), Lane::of(0.0));
-        for tile in tiles {
-            find(sim, &limits, tile, &mut steps);
-            for &step in steps.iter() {
-                smallest = smallest.plus(Smallest(step));
-            }
-        }
-        smallest
-    });
-    steps.0
+pub(super) struct Steps {
+    /// Of the last cells, s; infinite where there is no material.
+    own: Lane,
+    /// The shortest in each lane, s.
+    shortest: Lane,
 }
 
-/// The stable steps of a tile's cells.
-fn find(sim: &Simulation, limits: &Limits, tile: usize, steps: &mut Lane) {
-    let Cells {
-        shapes,
-        sums,
-        medium,
-        fills,
-        ..
-    } = &sim.cells;
-    let (shapes, sum, fill) = (&shapes[tile], &sums[tile], &fills[tile]);
-    match medium.get(tile) {
-        None => times(sim.simd, limits, shapes, sum, &limits.alike, fill, steps),
-        Some(CellMedium { wave_modulus, .. }) => {
-            times(sim.simd, limits, shapes, sum, wave_modulus, fill, steps);
+impl Default for Steps {
+    fn default() -> Steps {
+        Steps {
+            own: Lane::of(f64::INFINITY),
+            shortest: Lane::of(f64::INFINITY),
         }
     }
 }
 
+impl Steps {
+    /// Adds cells.
+    #[inline]
+    pub fn add(
+        &mut self,
+        simd: Simd,
+        limits: &Limits,
+        shapes: &Shapes,
+        sum: &CellSums,
+        medium: Option<&CellMedium>,
+        fill: &CellFill,
+    ) {
+        let wave_modulus = medium.map_or(&limits.alike, |medium| &medium.wave_modulus);
+        times(simd, limits, shapes, sum, wave_modulus, fill, self);
+    }
+
+    /// The shortest of all.
+    pub fn shortest(&self) -> Smallest {
+        (self.shortest.iter()).fold(Smallest::default(), |s, &step| s.plus(Smallest(step)))
+    }
+}
+
+/// min h_e / c_e over all cells, s, when forces were last found.
+pub(crate) fn critical(sim: &Simulation) -> f64 {
+    sim.cells.shortest
+}
+
 /// The middle of the element that has the shortest step.
 fn shortest_at(sim: &Simulation) -> Vec3 {
-    let limits = Limits::of(sim);
-    let mut steps = Lane::of(0.0);
+    let Simulation {
+        plan,
+        active,
+        shared,
+        cells,
+        simd,
+        ..
+    } = sim;
+    let limits = Limits::new(&plan.numerics, &sim.elasticity);
+    let (mut steps, mut shapes) = (Steps::default(), Shapes::default());
     let mut shortest = (f64::INFINITY, 0);
-    for tile in 0..sim.active.own_tiles() {
-        find(sim, &limits, tile, &mut steps);
-        for (l, &step) in steps.iter().enumerate() {
+    for tile in 0..active.own_tiles() {
+        shapes.enter(*simd, active.tile_nodes(tile), &shared.places);
+        let (sum, fill) = (&cells.sums[tile], &cells.fills[tile]);
+        steps.add(*simd, &limits, &shapes, sum, cells.medium.get(tile), fill);
+        for (l, &step) in steps.own.iter().enumerate() {
             if step < shortest.0 {
                 shortest = (step, tile * LANES + l);
             }
         }
     }
-    sim.plan
-        .mesh
-        .centroid(sim.active.elements[shortest.1] as usize)
+    plan.mesh.centroid(active.elements[shortest.1] as usize)
 }
 
 /// What all cells share.
-struct Limits {
+pub(super) struct Limits {
     partly: f64,
     stiffest: f64,
     /// The same for each cell, where all are alike.
@@ -136,9 +156,9 @@ struct Limits {
 }
 
 impl Limits {
-    fn of(sim: &Simulation) -> Limits {
-        let numerics = &sim.plan.numerics;
-        let stiffest = sim.elasticity.iter().map(|e| e[2]).fold(0.0, f64::max);
+    /// λ, G and E_c of all bodies, Pa.
+    pub fn new(numerics: &Numerics, elasticity: &[[f64; 3]]) -> Limits {
+        let stiffest = elasticity.iter().map(|e| e[2]).fold(0.0, f64::max);
         Limits {
             partly: correction::stiffening(numerics.mass),
             stiffest,
@@ -156,18 +176,22 @@ for_each_simd! {
         sum: &CellSums,
         wave_modulus: &Lane,
         fill: &CellFill,
-        steps: &mut Lane,
+        steps: &mut Steps,
     ) {
         for l in 0..LANES {
             let modulus = either(sum.volume[l] > 0.0, wave_modulus[l], limits.stiffest);
             let filled = fill.filled[l] > 0.0;
             let own = sum.mass[l] / (sum.solid[l] * limits.partly);
             let density = either(filled, fill.density[l], own);
-            let travel = shapes.altitude[l] / (modulus / density).sqrt();
+            let travel = shortest_altitude(&shapes.gradients(l)) / (modulus / density).sqrt();
             let xi = limits.viscosity / travel;
             let step = travel * ((1.0 + xi * xi).sqrt() - xi);
             let holds = filled | (sum.solid[l] > 0.0);
-            steps[l] = either(holds, step, f64::INFINITY);
+            let step = either(holds, step, f64::INFINITY);
+            steps.own[l] = step;
+            let least = steps.shortest[l];
+            // What is not a number must win, so that it is noticed.
+            steps.shortest[l] = either((least <= step) | least.is_nan(), least, step);
         }
     }
 }

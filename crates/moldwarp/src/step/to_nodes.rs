@@ -3,12 +3,13 @@
 use super::collect::{Share, Shares};
 use super::corners::{self, Corners, NO_CORNERS, Quad, all_corners, load_nodes, set_corner};
 use super::shapes::Shapes;
+use super::time_step::{Limits, Steps};
 use super::{Active, BLOCK, CellFill, CellForce, CellMedium, CellSums, Cells, Node};
 use super::{smoothing, strain, sums};
 use crate::lanes::{self, LANES, Lane, Simd, either, for_each_simd, get, lane_of, set};
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
-use crate::parallel::fold;
+use crate::parallel::{Smallest, fold};
 use crate::plan::{Integration, Smoothing};
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt, add_scaled};
@@ -129,27 +130,29 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     let last = plan.numerics.smoothing != Smoothing::Conjugate;
     cells.keep_forces(!last || viscosity > 0.0);
     let Cells {
-        shapes,
         sums,
         medium,
         fills,
         forces,
         portions,
+        shortest,
         ..
     } = cells;
-    let (shapes, sums, medium) = (&shapes[..], &sums[..], &medium[..]);
+    let (sums, medium) = (&sums[..], &medium[..]);
     let alike = elasticity.first().map_or([0.0; 2], |e| [e[0], e[1]]);
     let forces = (!forces.is_empty()).then_some(&mut forces[..]);
     let cut = portions.cut();
     let items = (0..sums.len(), &mut fills[..], (forces, portions.shares()));
     type Out<'a> = (Option<&'a mut [CellForce]>, Shares<'a, Quad, 1>);
-    let work = cut.fold(items, &|(range, fills, (forces, shares)): (
+    let limits = Limits::new(&plan.numerics, elasticity);
+    let (work, least): (f64, Smallest) = cut.fold(items, &|(range, fills, (forces, shares)): (
         Range<usize>,
         &mut [CellFill],
         Out,
     )| {
         let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
         let (mut work, mut passing) = (Lane::of(0.0), CellForce::default());
+        let (mut shapes, mut steps) = (Shapes::default(), Steps::default());
         let mut forces = forces.map(|forces| forces.iter_mut());
         for (tile, fill) in active.without_guests(range).zip(fills) {
             let nodes = active.tile_nodes(tile);
@@ -161,8 +164,10 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 fill.filled[l] = f64::from(u8::from(filled));
             }
             corners::sum_nodes(&mut fill.density, nodes, &shared.density);
-            let (shapes, sum) = (&shapes[tile], &sums[tile]);
-            stand_in(simd, shapes, sum, fill, force);
+            shapes.enter(simd, nodes, &shared.places);
+            let sum = &sums[tile];
+            stand_in(simd, &shapes, sum, fill, force);
+            steps.add(simd, &limits, &shapes, sum, medium.get(tile), fill);
             if reference.is_some() {
                 force.weighed = medium[tile].shares;
             }
@@ -191,7 +196,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                     None => alike.map(|m| times(m, &sum.volume)),
                 };
                 let cells = Resisting {
-                    shapes,
+                    shapes: &shapes,
                     sum,
                     fill,
                     moduli: &moduli,
@@ -201,11 +206,12 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 force.viscous = [Lane::of(0.0); 6];
             }
             if last {
-                push(simd, shapes, force, nodes, &mut pushed, &mut share);
+                push(simd, &shapes, force, nodes, &mut pushed, &mut share);
             }
         }
-        lanes::sum(&work)
+        (lanes::sum(&work), steps.shortest())
     });
+    *shortest = least.0;
     ledger.viscous_work(work);
 }
 

@@ -271,7 +271,6 @@ fn settle(sim: &mut Simulation) {
         particles,
         active,
         shared,
-        cells,
         pending,
         simd,
         ..
@@ -281,22 +280,22 @@ fn settle(sim: &mut Simulation) {
         received: &shared.received,
         grid: &shared.grid,
     };
-    let (active, simd) = (&*active, *simd);
+    let (active, places, simd) = (&*active, &shared.places[..], *simd);
     let (position, mass) = (particles.position.components(), &particles.mass[..]);
     type Velocities<'a> = [&'a mut [f64]; 3];
     let velocities = particles.velocity.components_mut();
-    let all = ByTile::new(&active.tiles, velocities, &cells.shapes[..]);
-    fold(all, super::TILES, &|block: ByTile<
-        Velocities,
-        &[Shapes],
-    >| {
+    let all = ByTile::new(&active.tiles, velocities, ());
+    fold(all, super::TILES, &|block: ByTile<Velocities, ()>| {
         let first = block.first();
-        let tiles = block.each().zip(block.cells);
+        let tiles = block.each();
         let mut own = block.particles;
+        let mut shapes = Shapes::default();
         let (mut kick, mut mass_lane) = (Kick::default(), Lane::of(0.0));
         let (mut x, mut v) = ([Lane::of(0.0); 3], [Lane::of(0.0); 3]);
-        for ((number, tile), shapes) in tiles {
-            kick.enter(simd, &given, active.tile_nodes(number), shapes);
+        for (number, tile) in tiles {
+            let nodes = active.tile_nodes(number);
+            shapes.enter(simd, nodes, places);
+            kick.enter(simd, &given, nodes, &shapes);
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 prefetch(&position, slot.end);
@@ -307,7 +306,7 @@ fn settle(sim: &mut Simulation) {
                     position: &x,
                     mass: &mass_lane,
                 };
-                kick.give(simd, &given, &points, &mut v, shapes, lanes);
+                kick.give(simd, &given, &points, &mut v, &shapes, lanes);
                 store(&v, &mut own, start, lanes);
             }
         }

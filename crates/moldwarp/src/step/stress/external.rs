@@ -5,6 +5,7 @@
 //! the pass then finds their answers where it would call another model. Works and volumes it books as
 //! for any other.
 
+use super::super::shapes::Shapes;
 use super::super::strain::Deformation;
 use super::{Arrays, Points, strain};
 use crate::lanes::{ByTile, load, store};
@@ -229,11 +230,10 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         particles,
         active,
         shared,
-        cells,
         simd,
         ..
     } = sim;
-    let (active, shared, shapes, simd) = (&*active, &*shared, &cells.shapes[..], *simd);
+    let (active, shared, simd) = (&*active, &*shared, *simd);
     let (materials, bodies, body) = (&plan.materials, &plan.bodies, &particles.body);
     let model = |body: u16| &materials[bodies[usize::from(body)].material].model;
     let smoothing = plan.numerics.smoothing;
@@ -254,16 +254,12 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         let tiles = block.each();
         let (arrays, (mut before, mut increment, stress)) = block.particles;
         stress.into_iter().for_each(|s| s.fill(f64::NAN));
-        let mut own = Deformation::default();
+        let (mut own, mut shapes) = (Deformation::default(), Shapes::default());
         let mut points = Points::default();
         for (number, tile) in tiles {
-            own.enter(
-                simd,
-                &shapes[number],
-                active.tile_nodes(number),
-                shared,
-                smoothing,
-            );
+            let nodes = active.tile_nodes(number);
+            shapes.enter(simd, nodes, &shared.places);
+            own.enter(simd, &shapes, nodes, shared, smoothing);
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let body = &body[slot];

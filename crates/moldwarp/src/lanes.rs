@@ -111,7 +111,7 @@ impl Simd {
 
     #[cfg(target_arch = "x86_64")]
     pub(crate) fn has_avx2(self) -> bool {
-        self.0 == Level::Avx2
+        self.0 >= Level::Avx2
     }
 }
 
@@ -259,6 +259,12 @@ pub fn either<T>(condition: bool, a: T, b: T) -> T {
     std::hint::select_unpredictable(condition, a, b)
 }
 
+/// The larger number. Unlike the library's, which minds what is not a number, one instruction.
+#[inline(always)]
+pub fn larger(a: f64, b: f64) -> f64 {
+    either(b > a, b, a)
+}
+
 /// Whether all are the same. (Without leaving early, as in [`any`]: that keeps a loop scalar.)
 #[inline(always)]
 pub fn alike(bodies: &[u16]) -> bool {
@@ -280,6 +286,12 @@ pub fn sum(lanes: &Lane) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn the_widest_have_what_the_narrower_have() {
+        assert!(Simd(Level::Avx512).has_avx2() && !Simd(Level::Scalar).has_avx2());
+    }
 
     #[test]
     fn numbers_go_to_lanes_and_back() {

@@ -47,6 +47,8 @@ pub struct Strained {
     pub plastic: bool,
     pub plastic_strain: VoigtLanes,
     pub state: [Lane; STATE_SIZE],
+    /// Whether any state variable has changed.
+    pub changed: bool,
 }
 
 impl Default for Strained {
@@ -59,6 +61,7 @@ impl Default for Strained {
             plastic: false,
             plastic_strain: zero,
             state: [Lane::of(0.0); STATE_SIZE],
+            changed: false,
         }
     }
 }
@@ -105,13 +108,14 @@ impl Material {
         match self {
             Material::MohrCoulomb(soil) => soil.update_lanes(simd, s, lanes),
             Material::LinearElastic(_) | Material::Rigid | Material::External(_) => {
-                s.plastic = false;
+                (s.plastic, s.changed) = (false, false);
                 for l in 0..lanes {
                     let mut state = get(&s.state, l);
                     let update = self.update(&get(&s.before, l), &get(&s.strain, l), &mut state);
                     set(&mut s.stress, l, update.stress);
                     set(&mut s.plastic_strain, l, update.plastic_strain);
                     s.plastic |= update.plastic_strain != [0.0; 6];
+                    s.changed |= state != get(&s.state, l);
                     set(&mut s.state, l, state);
                 }
             }

@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use crate::Vec3;
+use crate::lanes::larger;
 use rayon::prelude::*;
 
 /// Gradients of N₁, N₂, N₃ (1/m) and signed volume (m³) of a tetrahedron.
@@ -26,21 +27,19 @@ pub fn barycentric(origin: Vec3, gradients: &[Vec3; 3], x: Vec3) -> [f64; 4] {
     [1.0 - b - c - e, b, c, e]
 }
 
-/// Unlike the library's, vector instructions at once.
+/// 1 over the square of the shortest altitude, 1/m², of a tetrahedron with these gradients of N₁, N₂, N₃, 1/m: a gradient
+/// is 1 over an altitude.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    crate::lanes::either(b > a, b, a)
+pub fn steepest_squared(gradients: &[Vec3; 3]) -> f64 {
+    let first = -(gradients[0] + gradients[1] + gradients[2]);
+    gradients
+        .iter()
+        .fold(first.length_squared(), |m, g| larger(m, g.length_squared()))
 }
 
-/// Shortest altitude, m, of a tetrahedron with these gradients of N₁, N₂, N₃, 1/m: a gradient is 1 over an
-/// altitude.
-#[inline(always)]
+/// Shortest altitude, m, of a tetrahedron with these gradients.
 pub fn shortest_altitude(gradients: &[Vec3; 3]) -> f64 {
-    let first = -(gradients[0] + gradients[1] + gradients[2]);
-    let steepest = gradients
-        .iter()
-        .fold(first.length_squared(), |m, g| larger(m, g.length_squared()));
-    1.0 / steepest.sqrt()
+    1.0 / steepest_squared(gradients).sqrt()
 }
 
 impl Mesh {

@@ -1,6 +1,7 @@
 //! Stages 7 and 8: particles move with the nodes, the mesh moves with its driver and its boundaries,
 //! and each particle's element is found anew.
 
+use super::corners::NO_CORNERS;
 use super::motion::{Crossing, Motion, Search, look};
 use super::shapes::Shapes;
 use super::state::moved;
@@ -100,9 +101,10 @@ fn locate(sim: &mut Simulation) -> Crossing {
         let tiles = block.each();
         let elements = block.particles;
         let (mut motion, mut shapes) = (Motion::default(), Shapes::default());
+        let mut corners = NO_CORNERS;
         let mut crossing = Crossing::default();
         for (number, tile) in tiles {
-            shapes.enter(simd, active.tile_nodes(number), places);
+            shapes.enter(simd, &mut corners, active.tile_nodes(number), places);
             for slot in tile.slots() {
                 look(
                     simd,

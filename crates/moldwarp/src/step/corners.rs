@@ -84,12 +84,43 @@ pub(super) fn load_nodes(
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::load_nodes(corners, cells, vectors) };
+        return unsafe { avx2::load_nodes(corners, None, cells, vectors) };
     }
     let _ = simd;
+    load_plainly(corners, None, cells, vectors);
+}
+
+/// The same, and sums up their fourth numbers.
+pub(super) fn load_and_sum(
+    simd: Simd,
+    corners: &mut Corners,
+    sums: &mut Lane,
+    cells: &[[u32; 4]; LANES],
+    quads: &[Quad],
+) {
+    #[cfg(target_arch = "x86_64")]
+    if simd.has_avx2() {
+        // SAFETY: the processor has the instructions.
+        return unsafe { avx2::load_nodes(corners, Some(sums), cells, quads) };
+    }
+    let _ = simd;
+    load_plainly(corners, Some(sums), cells, quads);
+}
+
+fn load_plainly(
+    corners: &mut Corners,
+    mut sums: Option<&mut Lane>,
+    cells: &[[u32; 4]; LANES],
+    quads: &[Quad],
+) {
     for (l, cell) in cells.iter().enumerate() {
+        let mut sum = 0.0;
         for (i, &n) in cell.iter().enumerate() {
-            set_corner(corners, l, i, vectors[n as usize].vector());
+            set_corner(corners, l, i, quads[n as usize].vector());
+            sum += quads[n as usize].0[3];
+        }
+        if let Some(sums) = &mut sums {
+            sums[l] = sum;
         }
     }
 }
@@ -198,10 +229,16 @@ mod avx2 {
     }
 
     #[target_feature(enable = "avx2")]
-    pub fn load_nodes(corners: &mut Corners, cells: &[[u32; 4]; LANES], vectors: &[Quad]) {
-        assert!(within(cells, 0, vectors.len()));
-        let from = vectors.as_ptr().cast::<f64>();
+    pub fn load_nodes(
+        corners: &mut Corners,
+        mut sums: Option<&mut Lane>,
+        cells: &[[u32; 4]; LANES],
+        quads: &[Quad],
+    ) {
+        assert!(within(cells, 0, quads.len()));
+        let from = quads.as_ptr().cast::<f64>();
         for (k, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
+            let mut sum = _mm256_setzero_pd();
             for i in 0..4 {
                 // SAFETY: all nodes are there.
                 let rows = unsafe {
@@ -212,10 +249,14 @@ mod avx2 {
                         _mm256_load_pd(from.add(4 * cells[3][i] as usize)),
                     ]
                 };
-                let [x, y, z, _] = transpose(rows[0], rows[1], rows[2], rows[3]);
+                let [x, y, z, fourth] = transpose(rows[0], rows[1], rows[2], rows[3]);
+                sum = _mm256_add_pd(sum, fourth);
                 set_four(&mut corners[3 * i], 4 * k, x);
                 set_four(&mut corners[3 * i + 1], 4 * k, y);
                 set_four(&mut corners[3 * i + 2], 4 * k, z);
+            }
+            if let Some(sums) = &mut sums {
+                set_four(sums, 4 * k, sum);
             }
         }
     }
@@ -297,9 +338,11 @@ mod tests {
         let both = |work: &dyn Fn(Simd) -> Vec<Quad>| assert_eq!(work(plain), work(Simd::best()));
         both(&|simd| {
             let mut corners = NO_CORNERS;
-            load_nodes(simd, &mut corners, &cells, &quads);
+            let mut sums = Lane::of(0.0);
+            load_and_sum(simd, &mut corners, &mut sums, &cells, &quads);
             let vectors = (0..LANES).flat_map(|l| all_corners(&corners, l));
-            vectors.map(Quad::from).collect()
+            let sums = sums.iter().map(|&sum| Quad([sum, 0.0, 0.0, 0.0]));
+            vectors.map(Quad::from).chain(sums).collect()
         });
         let lane = |k: usize| Lane::from(std::array::from_fn(|l| number(100 * k + l)));
         let vectors: Corners = std::array::from_fn(lane);

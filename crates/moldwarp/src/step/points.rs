@@ -4,6 +4,7 @@
 //! One pass in place of four, since a particle's numbers come from memory, which takes about as long as to compute with
 //! them.
 
+use super::corners::NO_CORNERS;
 use super::motion::{self, Crossing, Motion, Search, go_along};
 use super::shapes::Shapes;
 use super::state::Summed;
@@ -90,6 +91,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (records, (to_nodes, to_pairs)) = block.cells;
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
         let (mut shapes, mut sums) = (Shapes::default(), Sums::default());
+        let mut corners = NO_CORNERS;
         let mut giving = (to_nodes.begin(), to_pairs.begin());
         let (mut kick, mut speeds) = (Kick::default(), [Lane::of(0.0); 3]);
         let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
@@ -97,10 +99,11 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut begun, mut ended) = (Lane::of(0.0), [Lane::of(0.0); 2]);
         for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
             let nodes = active.tile_nodes(number);
-            shapes.enter(simd, nodes, &shared.places);
-            deformation.enter(simd, &shapes, nodes, shared, smoothing);
+            shapes.enter(simd, &mut corners, nodes, &shared.places);
+            deformation.enter(simd, &mut corners, &shapes, nodes, shared, smoothing);
+            stress.points.enter();
             own_work(simd, &deformation, records.sum, &mut begun);
-            kick.enter(simd, &given, nodes, &shapes);
+            kick.enter(simd, &mut corners, &given, nodes, &shapes);
             if stays {
                 sums.enter(&mut records);
             }
@@ -108,9 +111,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let bodies = &body[slot.clone()];
                 let next = slot.end - first;
-                prefetch(&stressed.0.each_ref().map(|s| &**s), next);
-                prefetch(&stressed.1.each_ref().map(|s| &**s), next);
-                prefetch(&[&*stressed.2], next);
+                // Not all at once: only so many lines can be on their way.
                 prefetch(&position.each_ref().map(|x| &**x), next);
                 prefetch(&velocity.each_ref().map(|v| &**v), next);
                 prefetch(&[mass], slot.end);
@@ -132,6 +133,9 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 kick.give(simd, &given, &before, &mut speeds, &shapes, lanes);
                 store(&speeds, &mut velocity, start, lanes);
                 stress.update(&deformation, slot.clone(), bodies, &mut stressed, first);
+                prefetch(&stressed.0.each_ref().map(|s| &**s), next);
+                prefetch(&stressed.1.each_ref().map(|s| &**s), next);
+                prefetch(&[&*stressed.2], next);
                 go_along(
                     simd,
                     &mut motion,

@@ -3,14 +3,13 @@
 //! They are found anew wherever they are needed: their numbers would take longer to come from memory than the places of
 //! the nodes, which the cache holds, take to make them.
 
-use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
+use super::corners::{Corners, Quad, all_corners, load_nodes};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, Simd, for_each_simd, get, set};
 use crate::mesh::{barycentric, tetrahedron_gradients};
 
 /// What the shape functions of cells are made of.
 pub struct Shapes {
-    places: Corners,
     /// Node 0.
     origin: [Lane; 3],
     /// ∇N₁, ∇N₂, ∇N₃.
@@ -22,7 +21,6 @@ pub struct Shapes {
 impl Default for Shapes {
     fn default() -> Shapes {
         Shapes {
-            places: NO_CORNERS,
             origin: [Lane::of(0.0); 3],
             gradients: [Lane::of(0.0); 9],
             volume: Lane::of(0.0),
@@ -31,9 +29,9 @@ impl Default for Shapes {
 }
 
 for_each_simd! {
-    fn find(shapes: &mut Shapes) {
+    fn find(shapes: &mut Shapes, places: &Corners) {
         for l in 0..LANES {
-            let corners = all_corners(&shapes.places, l);
+            let corners = all_corners(places, l);
             let (gradients, volume) = tetrahedron_gradients(corners);
             set(&mut shapes.origin, l, corners[0].to_array());
             for (i, g) in gradients.iter().enumerate() {
@@ -47,11 +45,17 @@ for_each_simd! {
 }
 
 impl Shapes {
-    /// Goes to cells with these nodes; `places` are those of all nodes.
+    /// Goes to cells with these nodes; `places` are those of all nodes. Overwrites `corners`.
     #[inline]
-    pub(super) fn enter(&mut self, simd: Simd, nodes: &[[u32; 4]; LANES], places: &[Quad]) {
-        load_nodes(simd, &mut self.places, nodes, places);
-        find(simd, self);
+    pub(super) fn enter(
+        &mut self,
+        simd: Simd,
+        corners: &mut Corners,
+        nodes: &[[u32; 4]; LANES],
+        places: &[Quad],
+    ) {
+        load_nodes(simd, corners, nodes, places);
+        find(simd, self, corners);
     }
 
     /// ∇N₁, ∇N₂, ∇N₃ of an element.

@@ -40,33 +40,29 @@ pub(super) fn weight(filled: f64, volume: f64, closed: f64, whole: f64) -> f64 {
     either(closed < volume, weight * closed / volume, weight)
 }
 
-/// θ̄_e of the cells with these nodes.
-#[inline(always)]
-pub(super) fn means(means: &mut Lane, nodes: &[[u32; 4]; LANES], volumetric: &[f64]) {
-    sum_nodes(means, nodes, volumetric);
-    means.iter_mut().for_each(|mean| *mean *= 0.25);
-}
-
 /// θ_n of each node.
 pub(super) fn strains(sim: &mut Simulation) {
     if sim.plan.numerics.smoothing == Smoothing::Off {
         return;
     }
-    means_at_nodes(&sim.cells.portions, &mut sim.shared.volumetric, 1.0);
+    let means = &mut sim.shared.moved[..];
+    means_at_nodes(&sim.cells.portions, means, 1.0, |quad| &mut quad.0[3]);
 }
 
 /// At each node the sum of what is smoothed times w_e over that of w_e, both collected, and over `factor`.
-fn means_at_nodes(portions: &Portions, means: &mut [f64], factor: f64) {
+fn means_at_nodes<T: Send>(
+    portions: &Portions,
+    means: &mut [T],
+    factor: f64,
+    of: impl Fn(&mut T) -> &mut f64 + Sync,
+) {
     let items = (0..means.len(), means);
-    fold(items, BLOCK, &|(slots, means): (
-        Range<usize>,
-        &mut [f64],
-    )| {
+    fold(items, BLOCK, &|(slots, means): (Range<usize>, &mut [T])| {
         let mut sums = [Quad::default(); BLOCK];
         portions.nodes.sums(slots, &mut [&mut sums]);
         for (mean, &Quad([sum, all, ..])) in means.iter_mut().zip(&sums) {
             let whole = factor * all;
-            *mean = if all > 0.0 { sum / whole } else { 0.0 };
+            *of(mean) = if all > 0.0 { sum / whole } else { 0.0 };
         }
     });
 }
@@ -113,9 +109,10 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     )| {
         let (mut traces, mut weights) = (Lane::of(0.0), Lane::of(0.0));
         let (mut shapes, mut share) = (Shapes::default(), shares.begin());
+        let mut corners = NO_CORNERS;
         for tile in active.without_guests(tiles) {
             let (force, nodes) = (&known[tile], active.tile_nodes(tile));
-            shapes.enter(simd, nodes, places);
+            shapes.enter(simd, &mut corners, nodes, places);
             for l in 0..LANES {
                 traces[l] = tensor::trace(&get(&force.stress, l));
                 weights[l] = weight(tile, l, &shapes);
@@ -124,7 +121,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         }
     });
     // q_n: a trace is three times the mean, and a quarter goes to each node.
-    means_at_nodes(portions, mean_stress, 12.0);
+    means_at_nodes(portions, mean_stress, 12.0, |mean| mean);
     let (mean_stress, drift) = (&mean_stress[..], &drift[..]);
     let items = (0..forces.len(), &mut forces[..], portions.shares());
     let work = cut.fold(items, &|(tiles, forces, shares): (
@@ -137,7 +134,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         let mut share = shares.begin();
         for (tile, force) in active.without_guests(tiles).zip(forces) {
             let nodes = active.tile_nodes(tile);
-            shapes.enter(simd, nodes, places);
+            shapes.enter(simd, &mut pushed, nodes, places);
             sum_nodes(&mut means, nodes, mean_stress);
             load_nodes(simd, &mut moved, nodes, drift);
             for l in (0..LANES).filter(|&l| active.is_cell[tile * LANES + l]) {

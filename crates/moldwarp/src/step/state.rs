@@ -47,13 +47,11 @@ pub struct Shared {
     pub filling: Vec<f64>,
     /// Mass over volume of all elements attached, kg/m³.
     pub density: Vec<f64>,
-    /// Averaged volumetric strain of the attached cells.
-    pub volumetric: Vec<f64>,
     /// A quarter of the averaged mean stress of the attached cells, Pa.
     pub mean_stress: Vec<f64>,
     /// Where nodes are, m.
     pub places: Vec<Quad>,
-    /// Δu_i of the last drift, m.
+    /// Δu_i of the last drift, m, and the averaged volumetric strain of the attached cells.
     pub moved: Vec<Quad>,
     /// What nodes exchange: accelerations or velocities.
     pub given: Vec<Quad>,
@@ -66,12 +64,7 @@ pub struct Shared {
 impl Shared {
     /// Of these nodes; what cells still need of the last drift is kept.
     pub(crate) fn renew(&mut self, nodes: &[Node]) {
-        for numbers in [
-            &mut self.filling,
-            &mut self.density,
-            &mut self.volumetric,
-            &mut self.mean_stress,
-        ] {
+        for numbers in [&mut self.filling, &mut self.density, &mut self.mean_stress] {
             numbers.resize(nodes.len(), 0.0);
         }
         for vectors in [&mut self.given, &mut self.received, &mut self.grid] {

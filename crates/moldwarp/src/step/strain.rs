@@ -1,7 +1,7 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
 use super::collect::Shares;
-use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
+use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_and_sum, load_nodes};
 use super::shapes::Shapes;
 use super::{CellFill, CellForce, CellSums, Cells, Shared, smoothing};
 use crate::lanes::{self, LANES, Lane, Simd, VoigtLanes, either, for_each_simd, get, set};
@@ -53,7 +53,8 @@ pub(super) struct Deformation {
     pub strain: VoigtLanes,
     /// Rotation of the step, by columns.
     pub turn: [Lane; 9],
-    moved: Corners,
+    /// Volume after a step over that before, of what has the smoothed strain.
+    pub growth: Lane,
 }
 
 impl Default for Deformation {
@@ -65,7 +66,7 @@ impl Default for Deformation {
             smoothed: Lane::of(0.0),
             strain: [Lane::of(0.0); 6],
             turn: [Lane::of(0.0); 9],
-            moved: NO_CORNERS,
+            growth: Lane::of(1.0),
         }
     }
 }
@@ -75,43 +76,52 @@ impl Deformation {
     pub fn enter(
         &mut self,
         simd: Simd,
+        corners: &mut Corners,
         shapes: &Shapes,
         nodes: &[[u32; 4]; LANES],
         shared: &Shared,
         smoothing: Smoothing,
     ) {
-        load_nodes(simd, &mut self.moved, nodes, &shared.moved);
-        let smooth = smoothing != Smoothing::Off;
-        if smooth {
-            smoothing::means(&mut self.smoothed, nodes, &shared.volumetric);
-        }
-        deform(simd, shapes, smooth, self);
+        load_and_sum(simd, corners, &mut self.smoothed, nodes, &shared.moved);
+        deform(simd, corners, shapes, smoothing != Smoothing::Off, self);
     }
 }
 
 for_each_simd! {
-    fn deform(shapes: &Shapes, smooth: bool, d: &mut Deformation) {
+    fn deform(moved: &Corners, shapes: &Shapes, smooth: bool, d: &mut Deformation) {
         for l in 0..LANES {
-            let corners = all_corners(&d.moved, l);
+            let corners = all_corners(moved, l);
             let gradient = gradient(&shapes.gradients(l), corners);
             let midpoint = midpoint(&gradient);
-            let volumetric = trace(&midpoint);
-            let smoothed = either(smooth, d.smoothed[l], volumetric);
+            let volumetric = volumetric(&gradient);
+            let smoothed = either(smooth, 0.25 * d.smoothed[l], volumetric);
             let mut strain = tensor::strain(&midpoint);
-            let change = (smoothed - volumetric) / 3.0;
+            let change = (smoothed - volumetric) * (1.0 / 3.0);
             (0..3).for_each(|k| strain[k] += change);
             set(&mut d.gradient, l, gradient.to_cols_array());
             set(&mut d.origin, l, corners[0].to_array());
             (d.volumetric[l], d.smoothed[l]) = (volumetric, smoothed);
+            d.growth[l] = growth(smoothed);
             set(&mut d.strain, l, strain);
             set(&mut d.turn, l, tensor::spin_rotation(&midpoint).to_cols_array());
         }
     }
 }
 
+/// Trace of [`midpoint`]: with the invariants of ∇Δu, (I₁ + I₂ + ¾ I₃) / (1 + ½ I₁ + ¼ I₂ + ⅛ I₃).
 #[inline(always)]
-fn trace(gradient: &Mat3) -> f64 {
-    gradient.x_axis.x + gradient.y_axis.y + gradient.z_axis.z
+fn volumetric(gradient: &Mat3) -> f64 {
+    let (x, y, z) = (gradient.x_axis, gradient.y_axis, gradient.z_axis);
+    let first = x.x + y.y + z.z;
+    let second = (x.x * y.y - x.y * y.x) + (y.y * z.z - y.z * z.y) + (z.z * x.x - z.x * x.z);
+    let third = x.dot(y.cross(z));
+    (first + second + 0.75 * third) / (1.0 + 0.5 * first + 0.25 * second + 0.125 * third)
+}
+
+/// Volume after a strain over that before, exact for a homogeneous compression.
+#[inline(always)]
+pub(super) fn growth(volumetric: f64) -> f64 {
+    (1.0 + 0.5 * volumetric) / (1.0 - 0.5 * volumetric)
 }
 
 for_each_simd! {
@@ -137,7 +147,7 @@ for_each_simd! {
         let Weighed { shapes, sum, fill } = tile;
         for l in 0..LANES {
             let gradient = gradient(&shapes.gradients(l), all_corners(moved, l));
-            let volumetric = trace(&midpoint(&gradient));
+            let volumetric = volumetric(&gradient);
             let (volume, whole) = (sum.volume[l], shapes.volume[l]);
             let weight = smoothing::weight(fill.filled[l], volume, sum.closed[l], whole);
             set(weights, l, [volumetric * weight, weight]);
@@ -188,8 +198,8 @@ fn gradients(sim: &mut Simulation) {
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
         for tile in active.without_guests(tiles) {
             let nodes = active.tile_nodes(tile);
+            shapes.enter(simd, &mut moved, nodes, &shared.places);
             load_nodes(simd, &mut moved, nodes, &shared.moved);
-            shapes.enter(simd, nodes, &shared.places);
             let weighed = Weighed {
                 shapes: &shapes,
                 sum: &sums[tile],

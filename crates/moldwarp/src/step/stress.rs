@@ -5,7 +5,7 @@ mod external;
 pub(crate) use external::Answers;
 pub(super) use external::ask;
 
-use super::strain::Deformation;
+use super::strain::{Deformation, growth};
 use crate::Mat3;
 use crate::lanes::{
     self, LANES, Lane, Simd, alike, any, either, for_each_simd, get, load, load_one, set, store,
@@ -30,6 +30,12 @@ pub(super) struct Points {
     pub volume: Lane,
     /// 1 where the material is separated and keeps its cell's own volumetric strain.
     separated: Lane,
+    /// Whether any is.
+    apart: bool,
+    /// Whether strains are those of the cells.
+    alike: bool,
+    /// Volume in the middle of the step, m³.
+    middle: Lane,
 }
 
 /// Works on particles side by side: [elastic, left out by smoothing, plastic], J.
@@ -82,7 +88,13 @@ impl<'a> Stresses<'a> {
         points.look_up(body, model, arrays, start);
         strain(*simd, own, points, arrays, start, lanes);
         points.update(*simd, body, model, (answers, place));
-        book(*simd, own, points, works, least, lanes);
+        match points.apart {
+            true => book_apart(*simd, own, points, works, least, lanes),
+            false => book(*simd, own, points, works, least, lanes),
+        }
+        if points.increment.plastic {
+            book_plastic(*simd, points, works, lanes);
+        }
         keep(*simd, points, arrays, start, lanes);
     }
 
@@ -99,11 +111,19 @@ impl Default for Points {
             increment: Strained::default(),
             volume: Lane::of(0.0),
             separated: Lane::of(0.0),
+            apart: false,
+            alike: false,
+            middle: Lane::of(0.0),
         }
     }
 }
 
 impl Points {
+    /// Goes to the next cells.
+    pub fn enter(&mut self) {
+        self.alike = false;
+    }
+
     /// Finds out which particles are separated.
     fn look_up<'m>(
         &mut self,
@@ -113,20 +133,23 @@ impl Points {
         start: usize,
     ) {
         let lanes = body.len();
-        self.separated[..lanes].fill(0.0);
+        self.apart = false;
         if alike(body) {
             let open = |k: usize| any(&states[k][start..start + lanes]);
             if !model(body[0]).opening().is_some_and(open) {
                 return;
             }
         }
+        self.separated.fill(0.0);
         for (l, &body) in body.iter().enumerate() {
             let model = model(body);
             let p = start + l;
             if model.opening().is_some_and(|k| states[k][p] > 0.0) {
                 let stress = std::array::from_fn(|k| stresses[k][p]);
                 let state = std::array::from_fn(|k| states[k][p]);
-                self.separated[l] = f64::from(u8::from(model.is_separated(&stress, &state)));
+                let separated = model.is_separated(&stress, &state);
+                self.separated[l] = f64::from(u8::from(separated));
+                self.apart |= separated;
             }
         }
     }
@@ -149,7 +172,7 @@ impl Points {
         }
         let before = self.increment.clone();
         let mut done = [false; LANES];
-        self.increment.plastic = true;
+        (self.increment.plastic, self.increment.changed) = (true, true);
         while let Some(next) = (0..lanes).find(|&l| !done[l]) {
             let mut all = before.clone();
             update(model(body[next]), &mut all);
@@ -165,12 +188,6 @@ impl Points {
             }
         }
     }
-}
-
-/// Volume after a strain over that before, exact for a homogeneous compression.
-#[inline(always)]
-fn growth(volumetric: f64) -> f64 {
-    (1.0 + 0.5 * volumetric) / (1.0 - 0.5 * volumetric)
 }
 
 for_each_simd! {
@@ -191,11 +208,18 @@ for_each_simd! {
             let turn = Mat3::from_cols_array(&get(&own.turn, l));
             let turned = tensor::rotate(&get(&points.increment.before, l), &turn);
             set(&mut points.increment.before, l, turned);
-            let mut strain = get(&own.strain, l);
-            let apart = points.separated[l];
-            let left_out = (own.volumetric[l] - own.smoothed[l]) * (1.0 / 3.0) * apart;
-            (0..3).for_each(|k| strain[k] += left_out);
-            set(&mut points.increment.strain, l, strain);
+        }
+        if points.alike && !points.apart {
+            return;
+        }
+        points.increment.strain = own.strain;
+        points.alike = !points.apart;
+        if points.apart {
+            for l in 0..whole(lanes) {
+                let own = own.volumetric[l] - own.smoothed[l];
+                let left_out = own * (1.0 / 3.0) * points.separated[l];
+                (0..3).for_each(|k| points.increment.strain[k][l] += left_out);
+            }
         }
     }
 }
@@ -211,34 +235,64 @@ for_each_simd! {
     ) {
         let increment = &points.increment;
         for l in 0..whole(lanes) {
+            let growth = own.growth[l];
+            least[l] = either(growth < least[l], growth, least[l]);
+            let middle = middle_stress(increment, l);
+            let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);
+            points.middle[l] = middle_volume;
+            points.volume[l] *= growth;
+            let work = tensor::dot(&middle, &get(&increment.strain, l)) * middle_volume;
+            works[0][l] += work;
+            let left_out = own.volumetric[l] - own.smoothed[l];
+            works[1][l] += tensor::trace(&middle) * (1.0 / 3.0) * left_out * middle_volume;
+        }
+    }
+}
+
+for_each_simd! {
+    /// The same where some are separated.
+    fn book_apart(
+        own: &Deformation,
+        points: &mut Points,
+        works: &mut Works,
+        least: &mut Lane,
+        lanes: usize,
+    ) {
+        let increment = &points.increment;
+        for l in 0..whole(lanes) {
             let volumetric = own.volumetric[l];
             let left_out = (volumetric - own.smoothed[l]) * (1.0 - points.separated[l]);
             let growth = growth(volumetric - left_out);
             least[l] = either(growth < least[l], growth, least[l]);
-            let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
-            let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]));
+            let middle = middle_stress(increment, l);
             let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);
+            points.middle[l] = middle_volume;
             points.volume[l] *= growth;
             let work = tensor::dot(&middle, &get(&increment.strain, l)) * middle_volume;
             works[0][l] += work;
-            works[1][l] += tensor::trace(&middle) / 3.0 * left_out * middle_volume;
-        }
-        if increment.plastic {
-            for l in 0..whole(lanes) {
-                let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
-                let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]));
-                let left_out =
-                    (own.volumetric[l] - own.smoothed[l]) * (1.0 - points.separated[l]);
-                let volumetric = own.volumetric[l] - left_out;
-                // The volume is the new one by now.
-                let middle_volume = 0.5 * points.volume[l] * (1.0 + 1.0 / growth(volumetric));
-                let plastic_strain = get(&increment.plastic_strain, l);
-                let plastic = tensor::dot(&middle, &plastic_strain) * middle_volume;
-                works[0][l] -= plastic;
-                works[2][l] += plastic;
-            }
+            works[1][l] += tensor::trace(&middle) * (1.0 / 3.0) * left_out * middle_volume;
         }
     }
+}
+
+for_each_simd! {
+    /// Books the plastic part.
+    fn book_plastic(points: &Points, works: &mut Works, lanes: usize) {
+        let increment = &points.increment;
+        for l in 0..whole(lanes) {
+            let (middle, plastic_strain) = (middle_stress(increment, l), get(&increment.plastic_strain, l));
+            let plastic = tensor::dot(&middle, &plastic_strain) * points.middle[l];
+            works[0][l] -= plastic;
+            works[2][l] += plastic;
+        }
+    }
+}
+
+/// Stress in the middle of the step, turned.
+#[inline(always)]
+fn middle_stress(increment: &Strained, l: usize) -> Voigt {
+    let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
+    std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]))
 }
 
 for_each_simd! {
@@ -246,7 +300,9 @@ for_each_simd! {
     fn keep(points: &Points, arrays: &mut Arrays, start: usize, lanes: usize) {
         let (stresses, states, volumes) = arrays;
         store(&points.increment.stress, stresses, start, lanes);
-        store(&points.increment.state, states, start, lanes);
+        if points.increment.changed {
+            store(&points.increment.state, states, start, lanes);
+        }
         store_one(&points.volume, volumes, start, lanes);
     }
 }

@@ -26,6 +26,8 @@ pub(super) struct Sums {
     shares: [Lane; 2],
     /// Whether these are all one.
     closed: bool,
+    /// Whether they have not all been in these cells.
+    opened: bool,
     /// λ, G and E_c, Pa.
     elasticity: [Lane; 3],
     /// The body whose they are in all lanes.
@@ -44,6 +46,7 @@ impl Default for Sums {
         Sums {
             shares: [Lane::of(1.0); 2],
             closed: true,
+            opened: false,
             elasticity: [Lane::of(0.0); 3],
             of: None,
             momentum: NO_CORNERS,
@@ -103,10 +106,17 @@ for_each_simd! {
             for k in 0..6 {
                 sum.stress[k][l] += points.stress[k][l] * volume;
             }
-            sum.mass[l] += m;
             sum.volume[l] += volume;
-            sum.solid[l] += volume * sums.shares[0][l];
-            sum.closed[l] += volume * sums.shares[1][l];
+        }
+    }
+}
+
+for_each_simd! {
+    /// Adds what of it has not opened and what is not separated.
+    fn add_closed(sums: &Sums, points: &Counted, sum: &mut CellSums, lanes: usize) {
+        for l in 0..whole(lanes) {
+            sum.solid[l] += points.volume[l] * sums.shares[0][l];
+            sum.closed[l] += points.volume[l] * sums.shares[1][l];
         }
     }
 }
@@ -129,6 +139,16 @@ for_each_simd! {
     }
 }
 
+for_each_simd! {
+    /// Masses of cells, as N_i add up to one.
+    fn whole_masses(sums: &Sums, sum: &mut CellSums) {
+        for l in 0..LANES {
+            let [a, b, c, d] = get(&sums.mass, l);
+            sum.mass[l] = a + b + c + d;
+        }
+    }
+}
+
 /// What is asked of all particles.
 #[derive(Clone, Copy)]
 pub(super) struct Asked<'a> {
@@ -146,6 +166,7 @@ impl Sums {
         if let Some(medium) = &mut records.medium {
             **medium = CellMedium::default();
         }
+        self.opened = false;
         self.momentum = NO_CORNERS;
         self.mass = [Lane::of(0.0); 4];
         self.pairs = [Lane::of(0.0); 6];
@@ -156,7 +177,15 @@ impl Sums {
     #[inline]
     pub fn add(&mut self, asked: &Asked, points: &Counted, bodies: &[u16], records: &mut Records) {
         self.look_up(asked, points, bodies);
-        add(asked.simd, self, points, records.sum, bodies.len());
+        let sum = &mut *records.sum;
+        if !self.closed && !self.opened {
+            self.opened = true;
+            (sum.solid, sum.closed) = (sum.volume, sum.volume);
+        }
+        add(asked.simd, self, points, sum, bodies.len());
+        if self.opened {
+            add_closed(asked.simd, self, points, sum, bodies.len());
+        }
         let Some(medium) = &mut records.medium else {
             return;
         };
@@ -183,6 +212,10 @@ impl Sums {
         (to_nodes, to_pairs): &mut Giving,
     ) {
         let sum = &mut *records.sum;
+        if !self.opened {
+            (sum.solid, sum.closed) = (sum.volume, sum.volume);
+        }
+        whole_masses(simd, self, sum);
         to_nodes.give(simd, nodes, &self.momentum, &self.mass);
         let alike = [&sum.solid, &sum.mass];
         to_nodes.give_alike(simd, nodes, alike, Some(&self.squares));
@@ -363,7 +396,7 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
         let mut shapes = Shapes::default();
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
             let (nodes, pairs) = (active.tile_nodes(number), mass.tile_pairs(number));
-            shapes.enter(asked.simd, nodes, &shared.places);
+            shapes.enter(asked.simd, &mut moved, nodes, &shared.places);
             sums.enter(&mut records);
             for slot in tile.slots() {
                 fetch(

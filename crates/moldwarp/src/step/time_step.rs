@@ -1,10 +1,11 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
+use super::corners::NO_CORNERS;
 use super::shapes::Shapes;
 use super::{CellFill, CellMedium, CellSums, correction};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, Simd, either, for_each_simd};
-use crate::mesh::shortest_altitude;
+use crate::mesh::steepest_squared;
 use crate::parallel::{Smallest, Sum};
 use crate::plan::Numerics;
 use crate::simulation::Simulation;
@@ -78,9 +79,9 @@ pub(super) fn choose(sim: &mut Simulation) -> Result<f64, TimeStepError> {
 /// averaging can stiffen (`correction::stiffening`). Viscosity β lowers the step by
 /// √(1+ξ²) − ξ with ξ = β c_e / h_e (the bound of a lagged damping force).
 pub(super) struct Steps {
-    /// Of the last cells, s; infinite where there is no material.
+    /// (h_e / c_e)² of the last cells, s²; infinite where there is no material.
     own: Lane,
-    /// The shortest in each lane, s.
+    /// The smallest in each lane, s².
     shortest: Lane,
 }
 
@@ -106,12 +107,19 @@ impl Steps {
         fill: &CellFill,
     ) {
         let wave_modulus = medium.map_or(&limits.alike, |medium| &medium.wave_modulus);
-        times(simd, limits, shapes, sum, wave_modulus, fill, self);
+        travel(simd, limits, shapes, sum, wave_modulus, fill, self);
     }
 
     /// The shortest of all.
-    pub fn shortest(&self) -> Smallest {
-        (self.shortest.iter()).fold(Smallest::default(), |s, &step| s.plus(Smallest(step)))
+    pub fn shortest(&self, limits: &Limits) -> Smallest {
+        let squares = self.shortest.iter().map(|&squared| Smallest(squared));
+        let travel = squares.fold(Smallest::default(), Sum::plus).0.sqrt();
+        if travel.is_infinite() {
+            return Smallest(travel);
+        }
+        // A longer way has a longer step with viscosity, too.
+        let xi = limits.viscosity / travel;
+        Smallest(travel * ((1.0 + xi * xi).sqrt() - xi))
     }
 }
 
@@ -132,9 +140,10 @@ fn shortest_at(sim: &Simulation) -> Vec3 {
     } = sim;
     let limits = Limits::new(&plan.numerics, &sim.elasticity);
     let (mut steps, mut shapes) = (Steps::default(), Shapes::default());
+    let mut corners = NO_CORNERS;
     let mut shortest = (f64::INFINITY, 0);
     for tile in 0..active.own_tiles() {
-        shapes.enter(*simd, active.tile_nodes(tile), &shared.places);
+        shapes.enter(*simd, &mut corners, active.tile_nodes(tile), &shared.places);
         let (sum, fill) = (&cells.sums[tile], &cells.fills[tile]);
         steps.add(*simd, &limits, &shapes, sum, cells.medium.get(tile), fill);
         for (l, &step) in steps.own.iter().enumerate() {
@@ -169,8 +178,8 @@ impl Limits {
 }
 
 for_each_simd! {
-    /// The stable step of each cell; infinite where there is no material.
-    fn times(
+    /// (h_e / c_e)² of each cell; infinite where there is no material.
+    fn travel(
         limits: &Limits,
         shapes: &Shapes,
         sum: &CellSums,
@@ -180,18 +189,18 @@ for_each_simd! {
     ) {
         for l in 0..LANES {
             let modulus = either(sum.volume[l] > 0.0, wave_modulus[l], limits.stiffest);
+            // One division for the density and the square of the altitude.
             let filled = fill.filled[l] > 0.0;
-            let own = sum.mass[l] / (sum.solid[l] * limits.partly);
-            let density = either(filled, fill.density[l], own);
-            let travel = shortest_altitude(&shapes.gradients(l)) / (modulus / density).sqrt();
-            let xi = limits.viscosity / travel;
-            let step = travel * ((1.0 + xi * xi).sqrt() - xi);
+            let mass = either(filled, fill.density[l], sum.mass[l]);
+            let volume = either(filled, 1.0, sum.solid[l] * limits.partly);
+            let steepness = steepest_squared(&shapes.gradients(l));
+            let squared = mass / (volume * modulus * steepness);
             let holds = filled | (sum.solid[l] > 0.0);
-            let step = either(holds, step, f64::INFINITY);
-            steps.own[l] = step;
-            let least = steps.shortest[l];
+            let squared = either(holds, squared, f64::INFINITY);
+            steps.own[l] = squared;
             // What is not a number must win, so that it is noticed.
-            steps.shortest[l] = either((least <= step) | least.is_nan(), least, step);
+            let least = steps.shortest[l];
+            steps.shortest[l] = either((least <= squared) | least.is_nan(), least, squared);
         }
     }
 }

@@ -164,7 +164,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 fill.filled[l] = f64::from(u8::from(filled));
             }
             corners::sum_nodes(&mut fill.density, nodes, &shared.density);
-            shapes.enter(simd, nodes, &shared.places);
+            shapes.enter(simd, &mut pushed, nodes, &shared.places);
             let sum = &sums[tile];
             stand_in(simd, &shapes, sum, fill, force);
             steps.add(simd, &limits, &shapes, sum, medium.get(tile), fill);
@@ -209,7 +209,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 push(simd, &shapes, force, nodes, &mut pushed, &mut share);
             }
         }
-        (lanes::sum(&work), steps.shortest())
+        (lanes::sum(&work), steps.shortest(&limits))
     });
     *shortest = least.0;
     ledger.viscous_work(work);
@@ -224,10 +224,10 @@ for_each_simd! {
     fn stand_in(shapes: &Shapes, sum: &CellSums, fill: &mut CellFill, force: &mut CellForce) {
         for l in 0..LANES {
             let (filled, volume) = (fill.filled[l] > 0.0, sum.volume[l]);
+            // Of cells that are filled, but have no particles, neighbours decide.
+            let fuller = either(filled, shapes.volume[l] / volume, 1.0);
             for k in 0..6 {
-                let own = sum.stress[k][l];
-                let mean = own / volume;
-                force.stress[k][l] = either(filled, mean * shapes.volume[l], own);
+                force.stress[k][l] = sum.stress[k][l] * fuller;
             }
             force.smoothed[l] = 0.0;
             fill.density[l] *= 0.25;

@@ -39,7 +39,6 @@ struct Linear {
 
 /// Cells side by side, and what particles are given in them.
 pub(super) struct Kick {
-    corners: Corners,
     received: Linear,
     /// v_i + h a_i, for relaxation.
     grid: Linear,
@@ -59,7 +58,6 @@ impl Default for Linear {
 impl Default for Kick {
     fn default() -> Kick {
         Kick {
-            corners: NO_CORNERS,
             received: Linear::default(),
             grid: Linear::default(),
             kinetic: Lane::of(0.0),
@@ -84,15 +82,22 @@ pub(super) struct Before<'a> {
 impl Kick {
     /// Goes to the next cells.
     #[inline]
-    pub fn enter(&mut self, simd: Simd, given: &Given, nodes: &[[u32; 4]; LANES], shapes: &Shapes) {
+    pub fn enter(
+        &mut self,
+        simd: Simd,
+        corners: &mut Corners,
+        given: &Given,
+        nodes: &[[u32; 4]; LANES],
+        shapes: &Shapes,
+    ) {
         let Some(pending) = given.pending else {
             return;
         };
-        load_nodes(simd, &mut self.corners, nodes, given.received);
-        vary(simd, &mut self.received, &self.corners, shapes);
+        load_nodes(simd, corners, nodes, given.received);
+        vary(simd, &mut self.received, corners, shapes);
         if pending.blend > 0.0 {
-            load_nodes(simd, &mut self.corners, nodes, given.grid);
-            vary(simd, &mut self.grid, &self.corners, shapes);
+            load_nodes(simd, corners, nodes, given.grid);
+            vary(simd, &mut self.grid, corners, shapes);
         }
     }
 
@@ -289,13 +294,13 @@ fn settle(sim: &mut Simulation) {
         let first = block.first();
         let tiles = block.each();
         let mut own = block.particles;
-        let mut shapes = Shapes::default();
+        let (mut shapes, mut corners) = (Shapes::default(), NO_CORNERS);
         let (mut kick, mut mass_lane) = (Kick::default(), Lane::of(0.0));
         let (mut x, mut v) = ([Lane::of(0.0); 3], [Lane::of(0.0); 3]);
         for (number, tile) in tiles {
             let nodes = active.tile_nodes(number);
-            shapes.enter(simd, nodes, places);
-            kick.enter(simd, &given, nodes, &shapes);
+            shapes.enter(simd, &mut corners, nodes, places);
+            kick.enter(simd, &mut corners, &given, nodes, &shapes);
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 prefetch(&position, slot.end);

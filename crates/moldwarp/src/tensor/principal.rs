@@ -102,8 +102,9 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let radius = (difference * difference + uw * uw).sqrt();
     // Equal values, far below round-off: no rotation.
     let differ = radius > 1e-20 * unit;
-    let cosine = either(differ, difference.abs() / radius, 1.0);
-    let sine = either(differ, uw / radius, 0.0);
+    let over = 1.0 / radius;
+    let cosine = either(differ, difference.abs() * over, 1.0);
+    let sine = either(differ, uw * over, 0.0);
     let large = (0.5 + 0.5 * cosine).sqrt();
     let small = 0.5 * sine / large;
     let ascending = difference >= 0.0;

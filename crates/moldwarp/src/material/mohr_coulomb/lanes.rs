@@ -31,12 +31,16 @@ impl MohrCoulomb {
         let mut sure: Lane = Lane::of(0.0);
         predict(simd, self, s, lanes, &mut sure);
         s.plastic = false;
-        s.state[3][..lanes].fill(0.0);
+        s.changed = any(&s.state[3][..lanes]);
+        if s.changed {
+            s.state[3][..lanes].fill(0.0);
+        }
         // Without leaving early, that it be done side by side.
         let calm = |l: usize| (s.state[2][l] <= 0.0) & (sure[l] > 0.0);
         if (0..lanes).fold(true, |all, l| all & calm(l)) {
             return;
         }
+        s.changed = true;
         let (mut unsure, mut count) = ([0u8; LANES], 0);
         if any(&s.state[2][..lanes]) {
             for l in 0..lanes {

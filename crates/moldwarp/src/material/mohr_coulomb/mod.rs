@@ -76,6 +76,9 @@ pub struct MohrCoulomb {
     lame: f64,
     shear_modulus: f64,
     bulk_modulus: f64,
+    /// 1/2G and 1/3K, 1/Pa.
+    half_flexibility: f64,
+    bulk_flexibility: f64,
     /// √(1 + sin²φ/3): the cone within the pyramid.
     cone: f64,
     /// Stresses below this count as none, Pa.
@@ -172,7 +175,7 @@ impl PlasticStep {
 /// √(2/3 e : e) with e the deviator of a strain.
 #[inline(always)]
 fn equivalent_strain(e: &Voigt) -> f64 {
-    let mean = tensor::trace(e) / 3.0;
+    let mean = tensor::trace(e) * (1.0 / 3.0);
     let (x, y, z) = (e[0] - mean, e[1] - mean, e[2] - mean);
     let normal = x * x + y * y + z * z;
     let shear = 0.5 * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
@@ -203,13 +206,16 @@ impl MohrCoulomb {
         parameters.check()?;
         let corners = Corners::new(&elastic, &parameters);
         let sin = corners.sin_friction();
+        let bulk_modulus = elastic.lame() + 2.0 / 3.0 * elastic.shear_modulus();
         Ok(MohrCoulomb {
             elastic,
             parameters,
             corners,
             lame: elastic.lame(),
             shear_modulus: elastic.shear_modulus(),
-            bulk_modulus: elastic.lame() + 2.0 / 3.0 * elastic.shear_modulus(),
+            bulk_modulus,
+            half_flexibility: 0.5 / elastic.shear_modulus(),
+            bulk_flexibility: 1.0 / (3.0 * bulk_modulus),
             cone: (1.0 + sin * sin / 3.0).sqrt(),
             negligible: 1e-12 * (elastic.young_modulus + corners.tip()),
         })
@@ -289,7 +295,7 @@ impl MohrCoulomb {
     /// The cone inscribed in the pyramid and the sphere-like bound on σ₁: no principal values.
     #[inline(always)]
     fn surely_elastic(&self, s: &Voigt) -> bool {
-        let mean = tensor::trace(s) / 3.0;
+        let mean = tensor::trace(s) * (1.0 / 3.0);
         let (x, y, z) = (s[0] - mean, s[1] - mean, s[2] - mean);
         let j2 = 0.5 * (x * x + y * y + z * z) + (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
         let shear = self.corners.half_strength() - mean * self.corners.sin_friction();
@@ -365,8 +371,8 @@ impl MohrCoulomb {
     /// C⁻¹ σ, with engineering shear strains.
     #[inline(always)]
     fn compliance(&self, stress: &Voigt) -> Voigt {
-        let mean = tensor::trace(stress) / 3.0;
-        let (half, bulk) = (0.5 / self.shear_modulus, mean / (3.0 * self.bulk_modulus));
+        let mean = tensor::trace(stress) * (1.0 / 3.0);
+        let (half, bulk) = (self.half_flexibility, mean * self.bulk_flexibility);
         [
             (stress[0] - mean) * half + bulk,
             (stress[1] - mean) * half + bulk,

@@ -5,6 +5,7 @@
 //! the pass then finds their answers where it would call another model. Works and volumes it books as
 //! for any other.
 
+use super::super::corners::NO_CORNERS;
 use super::super::shapes::Shapes;
 use super::super::strain::Deformation;
 use super::{Arrays, Points, strain};
@@ -99,7 +100,7 @@ impl Answers {
     pub(super) fn give(&self, points: &mut Strained, place: usize, lanes: usize) {
         load(&mut points.stress, &self.all.stress.components(), place);
         load(&mut points.state, &self.all.state.components(), place);
-        points.plastic = self.plastic;
+        (points.plastic, points.changed) = (self.plastic, true);
         if self.plastic {
             let plastic_strain = self.all.plastic_strain.components();
             load(&mut points.plastic_strain, &plastic_strain, place);
@@ -255,11 +256,13 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         let (arrays, (mut before, mut increment, stress)) = block.particles;
         stress.into_iter().for_each(|s| s.fill(f64::NAN));
         let (mut own, mut shapes) = (Deformation::default(), Shapes::default());
+        let mut corners = NO_CORNERS;
         let mut points = Points::default();
         for (number, tile) in tiles {
             let nodes = active.tile_nodes(number);
-            shapes.enter(simd, nodes, &shared.places);
-            own.enter(simd, &shapes, nodes, shared, smoothing);
+            shapes.enter(simd, &mut corners, nodes, &shared.places);
+            own.enter(simd, &mut corners, &shapes, nodes, shared, smoothing);
+            points.enter();
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let body = &body[slot];

@@ -176,7 +176,11 @@ pub fn load_one(lane: &mut Lane, column: &[f64], start: usize) {
     }
 }
 
-/// Has the numbers of the particles of a slot fetched from memory, to be there when it is their turn.
+/// Particles from the end of a slot to those that should be on their way from memory: the first cache has no room for more
+/// than the slot's own, so they come to the second.
+pub const AHEAD: usize = 2 * LANES;
+
+/// Has the numbers of the particles of a slot fetched from memory, to be near when it is their turn.
 #[inline(always)]
 pub fn prefetch<const N: usize>(columns: &[&[f64]; N], start: usize) {
     for column in columns {
@@ -190,9 +194,9 @@ pub fn prefetch<const N: usize>(columns: &[&[f64]; N], start: usize) {
 fn prefetch_line<T>(place: *const T) {
     #[cfg(target_arch = "x86_64")]
     {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
         // SAFETY: a hint may have any address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast()) };
+        unsafe { _mm_prefetch::<_MM_HINT_T1>(place.cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = place;

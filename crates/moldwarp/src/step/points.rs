@@ -12,7 +12,7 @@ use super::strain::{Deformation, own_work};
 use super::stress::{Arrays as Stressed, Stresses};
 use super::sums::{self, Arrays as SumArrays, Asked, Counted, Given as Sharing, Sums};
 use super::to_particles::{Before, Given, Kick};
-use crate::lanes::{self, ByTile, Lane, load, prefetch, prefetch_bodies, store};
+use crate::lanes::{self, AHEAD, ByTile, Lane, load, prefetch, prefetch_bodies, store};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
@@ -110,12 +110,12 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let bodies = &body[slot.clone()];
-                let next = slot.end - first;
+                let next = slot.end - first + AHEAD;
                 // Not all at once: only so many lines can be on their way.
                 prefetch(&position.each_ref().map(|x| &**x), next);
                 prefetch(&velocity.each_ref().map(|v| &**v), next);
-                prefetch(&[mass], slot.end);
-                prefetch_bodies(body, slot.end);
+                prefetch(&[mass], slot.end + AHEAD);
+                prefetch_bodies(body, slot.end + AHEAD);
                 let columns = position.each_ref().map(|x| &**x);
                 motion::fetch(
                     simd,

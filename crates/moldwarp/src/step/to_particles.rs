@@ -14,7 +14,7 @@ use super::correction::give;
 use super::shapes::Shapes;
 use super::{BLOCK, Node, strain};
 use crate::lanes::{
-    ByTile, LANES, Lane, Simd, for_each_simd, get, load, load_one, prefetch, set, store,
+    AHEAD, ByTile, LANES, Lane, Simd, for_each_simd, get, load, load_one, prefetch, set, store,
     sum as sum_lanes, whole,
 };
 use crate::parallel::{self, fold};
@@ -303,7 +303,7 @@ fn settle(sim: &mut Simulation) {
             kick.enter(simd, &mut corners, &given, nodes, &shapes);
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
-                prefetch(&position, slot.end);
+                prefetch(&position, slot.end + AHEAD);
                 load(&mut x, &position, slot.start);
                 load(&mut v, &own.each_ref().map(|v| &**v), start);
                 load_one(&mut mass_lane, mass, slot.start);

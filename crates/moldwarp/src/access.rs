@@ -53,7 +53,7 @@ impl Simulation {
     /// Gives all particles these velocities, m/s, in the order of the arrays: those of the middle of the
     /// coming step. The ledger books the change of their kinetic energy as given.
     pub fn assign_velocity(&mut self, velocity: Vectors) {
-        assert_eq!(velocity.len(), self.particles.len());
+        assert_eq!(velocity.len(), self.particles().len());
         self.particles.velocity = velocity;
         let constraints = self.clock.new_constraints;
         self.gave_velocities();
@@ -63,14 +63,14 @@ impl Simulation {
     /// Gives all particles these stresses, Pa, in the order of the arrays. Forces come from them from the
     /// end of the coming step on. The ledger knows works alone: what the change has stored is in no term.
     pub fn assign_stress(&mut self, stress: Tensors) {
-        assert_eq!(stress.len(), self.particles.len());
+        assert_eq!(stress.len(), self.particles().len());
         self.particles.stress = stress;
     }
 
     /// Takes the particles' arrays out and goes on with copies of them: what was looked at stays as it
     /// was, where it was.
     pub fn take_particles(&mut self) -> Particles {
-        let copy = self.particles.clone();
+        let copy = self.particles().clone();
         std::mem::replace(&mut self.particles, copy)
     }
 

@@ -80,13 +80,14 @@ impl Simulation {
     ///
     /// If they are still to receive a kick: see [`settle`](Simulation::settle).
     pub fn particles(&self) -> &Particles {
-        assert!(self.pending.is_none(), "particles are settled");
+        let settled = self.pending.is_none() && self.guests.twice() == 0;
+        assert!(settled, "particles are settled");
         &self.particles
     }
 
     /// Number of particles.
     pub fn particle_count(&self) -> usize {
-        self.particles.len()
+        self.particles.len() - self.guests.twice()
     }
 
     /// Number of elements that take part in the step.
@@ -112,7 +113,7 @@ impl Simulation {
     /// Number of particles that are missing: those at the start and added by stages, without those removed
     /// by stages and let out, against those that are there. Any is a bug.
     pub fn lost_particles(&self) -> u64 {
-        self.present.abs_diff(self.particles.len() as u64)
+        self.present.abs_diff(self.particle_count() as u64)
     }
 
     /// Particles that were put back onto their side of aligned contacts.

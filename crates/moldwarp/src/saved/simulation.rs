@@ -34,6 +34,7 @@ impl Simulation {
         &self,
         mut section: impl FnMut(&'static str, Section) -> Result<(), E>,
     ) -> Result<(), E> {
+        assert_eq!(self.guests.twice(), 0, "particles are settled");
         let Simulation {
             plan,
             particles,

@@ -4,7 +4,8 @@
 //! in each step. So they stay where they are for some steps. In the meantime a step works on copies of them,
 //! *guests*, behind all other particles, in tiles of their own, whose lanes add to the sums of the cells that
 //! the guests are in; where they come from lies a particle without mass and volume, which adds exactly
-//! nothing. Between steps every particle is at home with all that it has.
+//! nothing. They may stay over the end of a step; whoever looks at particles sees every one at home with all that it has
+//! ([`Simulation::settle`]).
 //!
 //! Only where one body moves in a mesh that stays; else particles are put in order in each step.
 
@@ -40,6 +41,11 @@ impl Guests {
 
     fn count(&self) -> usize {
         self.homes.len()
+    }
+
+    /// How many particles are there twice now.
+    pub fn twice(&self) -> usize {
+        if self.present { self.count() } else { 0 }
     }
 
     /// Homes of guests, and the elements under which they lie there.
@@ -89,7 +95,7 @@ impl Guests {
     }
 
     fn arrive(&mut self, particles: &mut Particles) {
-        if self.homes.is_empty() {
+        if self.homes.is_empty() || self.present {
             return;
         }
         self.present = true;
@@ -103,29 +109,6 @@ impl Guests {
         for &p in &self.homes {
             (particles.mass[p as usize], particles.volume[p as usize]) = (0.0, 0.0);
         }
-    }
-
-    /// They have only been looked at.
-    fn dismiss(&mut self, particles: &mut Particles) {
-        if !self.present {
-            return;
-        }
-        self.present = false;
-        let Particles {
-            id,
-            body,
-            element,
-            mass,
-            volume,
-            ..
-        } = particles;
-        put_back(mass, &self.homes);
-        put_back(volume, &self.homes);
-        let count = mass.len();
-        id.truncate(count);
-        body.truncate(count);
-        element.truncate(count);
-        (particles.working_columns_mut()).for_each(|c| c.truncate(count));
     }
 
     fn leave(&mut self, particles: &mut Particles) {
@@ -163,14 +146,9 @@ impl Simulation {
         self.fields.count() == 1 && !self.driven.moves() && !self.follower.moves()
     }
 
-    /// Guests come for a part of the step.
+    /// Guests come, if they are not there.
     pub(super) fn guests_arrive(&mut self) {
         self.guests.arrive(&mut self.particles);
-    }
-
-    /// The same where nothing has changed.
-    pub(super) fn guests_dismiss(&mut self) {
-        self.guests.dismiss(&mut self.particles);
     }
 
     pub(super) fn guests_leave(&mut self) {

@@ -90,12 +90,16 @@ impl Simulation {
     /// Returns that coming step: the stable one, at most `limit` (0 at the end of a stage).
     pub(crate) fn kick(&mut self, before: f64, limit: f64) -> Result<f64, Stop> {
         self.profile.lap(Part::Between);
-        match self.kick_all(before, limit)? {
-            (_, kinetic) if !kinetic.is_finite() => {
+        match self.kick_all(before, limit) {
+            Err(stop) => {
+                self.settle();
+                Err(stop)
+            }
+            Ok((_, kinetic)) if !kinetic.is_finite() => {
                 self.settle();
                 Err(self.not_finite())
             }
-            (dt, _) => Ok(dt),
+            Ok((dt, _)) => Ok(dt),
         }
     }
 

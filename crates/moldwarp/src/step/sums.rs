@@ -320,9 +320,9 @@ pub(super) fn run(sim: &mut Simulation, before: f64) {
     let made = std::mem::take(&mut sim.cells.summed);
     let [own, guests] = std::mem::take(&mut sim.cells.worked);
     if made != Summed::All {
+        // They stay for the next drift.
         sim.guests_arrive();
         let work = make(sim, made, before > 0.0);
-        sim.guests_dismiss();
         let known = if made == Summed::Own { own } else { 0.0 };
         sim.ledger.grid_stress_work(known + work);
     } else {

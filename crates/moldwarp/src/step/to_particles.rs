@@ -265,9 +265,9 @@ impl Simulation {
             parallel::inside(|| {
                 self.guests_arrive();
                 settle(self);
-                self.guests_leave();
             });
         }
+        self.guests_leave();
     }
 }
 

@@ -84,8 +84,9 @@ pub struct Simulation {
     pub(crate) answers: Answers,
     pub(crate) simd: Simd,
     pub(crate) profile: Profile,
-    /// Nodes before the last renumbering and their keys, kept so that no step allocates.
-    pub(crate) spare_nodes: Vec<Node>,
+    /// Velocities and displacements of nodes in the last drift before they were numbered anew, and their keys, kept so
+    /// that no step allocates.
+    pub(crate) spare_drifts: Vec<[Vec3; 2]>,
     pub(crate) spare_numbers: Vec<u32>,
 }
 
@@ -147,7 +148,7 @@ impl Simulation {
             answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),
-            spare_nodes: Vec::new(),
+            spare_drifts: Vec::new(),
             spare_numbers: Vec::new(),
         };
         bodies::check_probes(&simulation)?;
@@ -260,7 +261,9 @@ impl Simulation {
     /// Brings particles into the order of their elements and numbers the active cells and nodes anew.
     pub(crate) fn reorder(&mut self) {
         // The last drift of nodes that stay active is still needed for its work.
-        std::mem::swap(&mut self.nodes, &mut self.spare_nodes);
+        self.spare_drifts.clear();
+        let drifts = self.nodes.iter().map(|n| [n.grid_velocity, n.moved]);
+        self.spare_drifts.extend(drifts);
         std::mem::swap(&mut self.active.keys, &mut self.spare_numbers);
         let mesh = &self.plan.mesh;
         self.order
@@ -282,10 +285,10 @@ impl Simulation {
         self.contacts.find(&self.active);
         self.nodes.clear();
         self.nodes.resize(self.active.nodes.len(), Node::default());
-        for (node, &key) in self.spare_nodes.iter().zip(&self.spare_numbers) {
+        for (&drift, &key) in self.spare_drifts.iter().zip(&self.spare_numbers) {
             let slot = self.active.slot_of_key.get(key as usize);
             if let Some(new) = slot.and_then(|&s| self.nodes.get_mut(s as usize)) {
-                *new = *node;
+                [new.grid_velocity, new.moved] = drift;
             }
         }
         self.shared.renew(&self.nodes);

@@ -72,7 +72,7 @@ impl Simulation {
             answers: _,
             simd: _,
             profile: _,
-            spare_nodes: _,
+            spare_drifts: _,
             spare_numbers: _,
             // Particles have received all, and the next drift adds up their energy.
             pending,
@@ -172,7 +172,7 @@ impl Simulation {
             answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),
-            spare_nodes: Vec::new(),
+            spare_drifts: Vec::new(),
             spare_numbers: Vec::new(),
             plan,
         };

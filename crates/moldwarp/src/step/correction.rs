@@ -75,7 +75,7 @@ pub(super) fn change(
     matrix.flow(slot, given) * (theta / mass)
 }
 
-/// What particles receive of the nodes' accelerations in a kick of length `h`.
+/// What particles receive of the accelerations that nodes have given, in a kick of length `h`.
 pub(super) fn receive(sim: &mut Simulation, h: f64) {
     let Simulation {
         plan,
@@ -92,7 +92,6 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
     let Shared {
         given, received, ..
     } = shared;
-    give(nodes, given, |node| node.acceleration);
     let given = &given[..];
     let items = (0..nodes.len(), &mut nodes[..], &mut received[..]);
     let gain = fold(items, BLOCK, &|(slots, nodes, received): (

@@ -84,12 +84,18 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     book(sim, before > 0.0);
 }
 
-/// Sums of the forces, and half their work in the last drift if there has been one.
+/// Sums of the forces, and half their work in the last drift if there has been one; accelerations are given to the nodes
+/// around.
 fn book(sim: &mut Simulation, drifted: bool) {
     let gravity = sim.gravity;
-    let (work, forces) = fold(&sim.nodes[..], BLOCK, &|nodes: &[Node]| {
+    let items = (&sim.nodes[..], &mut sim.shared.given[..]);
+    let (work, forces) = fold(items, BLOCK, &|(nodes, given): (&[Node], &mut [Quad])| {
         let (mut work, mut forces) = (DriftWork::default(), Forces::default());
-        for node in nodes.iter().filter(|n| n.mass > 0.0) {
+        for (node, given) in nodes.iter().zip(given) {
+            *given = node.acceleration.into();
+            if node.mass == 0.0 {
+                continue;
+            }
             forces.add(node, gravity);
             if drifted {
                 work.add(node, gravity);

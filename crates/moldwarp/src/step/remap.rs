@@ -15,7 +15,10 @@ use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation, dt: f64) {
     hold(sim);
-    contact::remap(sim, |node| &mut node.average);
+    if sim.fields.count() > 1 {
+        contact::remap(sim, |node| &mut node.average);
+        correction::give(&sim.nodes, &mut sim.shared.given, |node| node.average);
+    }
     correct(sim);
     contact::remap(sim, |node| &mut node.grid_velocity);
     move_nodes(sim, dt);
@@ -35,24 +38,27 @@ pub(super) fn run(sim: &mut Simulation, dt: f64) {
     probes.add_drift(moved);
 }
 
-/// Applies constraints to v̄_i.
+/// Applies constraints to v̄_i, and gives it to the nodes around.
 fn hold(sim: &mut Simulation) {
     let Simulation {
         active,
         nodes,
+        shared,
         constraints,
         ..
     } = sim;
     let (active, constraints) = (&*active, &*constraints);
-    let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (
+    let items = (0..nodes.len(), &mut nodes[..], &mut shared.given[..]);
+    fold(items, BLOCK, &|(slots, nodes, given): (
         Range<usize>,
         &mut [Node],
+        &mut [Quad],
     )| {
-        for (slot, node) in slots.zip(nodes) {
+        for ((slot, node), given) in slots.zip(nodes).zip(given) {
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.average = constraint.free * node.average + constraints.prescribed(constraint);
             }
+            *given = node.average.into();
         }
     });
 }
@@ -70,7 +76,6 @@ fn correct(sim: &mut Simulation) {
     } = sim;
     let (active, matrix, constraints) = (&*active, &cells.mass, &*constraints);
     let theta = correction::theta(plan.numerics.mass);
-    correction::give(nodes, &mut shared.given, |node| node.average);
     let given = &shared.given[..];
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (

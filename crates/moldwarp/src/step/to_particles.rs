@@ -10,9 +10,8 @@
 //! when the next drift goes through them (`points.rs`), or as soon as anyone wants to see them ([`Simulation::settle`]).
 
 use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
-use super::correction::give;
 use super::shapes::Shapes;
-use super::{BLOCK, Node, strain};
+use super::{BLOCK, Node, Shared, strain};
 use crate::lanes::{
     AHEAD, ByTile, LANES, Lane, Simd, for_each_simd, get, load, load_one, prefetch, set, store,
     sum as sum_lanes, whole,
@@ -178,33 +177,39 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let h = before + after;
     let blend = -libm::expm1(-sim.plan.numerics.pic_rate * h);
     let first = sim.kinetic.take().unwrap_or_else(|| kinetic(sim));
-    let received = |node: &Node| node.received;
-    let [gain, square] = exchange(sim, received, |node, product| {
-        let works = [
-            node.momentum().dot(node.received),
-            product.dot(node.received),
-        ];
-        node.average = match node.mass {
-            0.0 => Vec3::ZERO,
-            mass => node.velocity + product * (h / mass),
-        };
-        works
-    });
+    let [gain, square] = exchange(
+        sim,
+        |shared| &shared.received,
+        |node, product| {
+            let works = [
+                node.momentum().dot(node.received),
+                product.dot(node.received),
+            ];
+            node.average = match node.mass {
+                0.0 => Vec3::ZERO,
+                mass => node.velocity + product * (h / mass),
+            };
+            works
+        },
+    );
     let free = first + h * gain + 0.5 * h * h * square;
     let mut kinetic = free;
     if blend > 0.0 {
         for (grid, node) in sim.shared.grid.iter_mut().zip(&sim.nodes) {
             *grid = (node.velocity + node.received * h).into();
         }
-        let grid = |node: &Node| node.velocity + node.received * h;
-        let [mixed, grid] = exchange(sim, grid, |node, product| {
-            let own = node.velocity + node.received * h;
-            let works = [node.mass * node.average.dot(own), product.dot(own)];
-            if node.mass > 0.0 {
-                node.average = node.average * (1.0 - blend) + product * (blend / node.mass);
-            }
-            works
-        });
+        let [mixed, grid] = exchange(
+            sim,
+            |shared| &shared.grid,
+            |node, product| {
+                let own = node.velocity + node.received * h;
+                let works = [node.mass * node.average.dot(own), product.dot(own)];
+                if node.mass > 0.0 {
+                    node.average = node.average * (1.0 - blend) + product * (blend / node.mass);
+                }
+                works
+            },
+        );
         let rest = 1.0 - blend;
         kinetic = rest * rest * free + blend * rest * mixed + 0.5 * blend * blend * grid;
     }
@@ -221,10 +226,10 @@ impl Node {
     }
 }
 
-/// Calls `work` on each node with Σ_j M_ij w_j, and adds up what it says.
+/// Calls `work` on each node with Σ_j M_ij w_j of what nodes share, and adds up what it says.
 fn exchange(
     sim: &mut Simulation,
-    w: impl Fn(&Node) -> Vec3 + Sync,
+    w: fn(&Shared) -> &[Quad],
     work: impl Fn(&mut Node, Vec3) -> [f64; 2] + Sync,
 ) -> [f64; 2] {
     let Simulation {
@@ -233,8 +238,7 @@ fn exchange(
         cells,
         ..
     } = sim;
-    give(nodes, &mut shared.given, w);
-    let (given, matrix) = (&shared.given[..], &cells.mass);
+    let (w, matrix) = (w(shared), &cells.mass);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
@@ -242,7 +246,7 @@ fn exchange(
     )| {
         let mut all = [0.0; 2];
         for (slot, node) in slots.zip(nodes) {
-            let works = work(node, matrix.product(slot, given));
+            let works = work(node, matrix.product(slot, w));
             (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
         }
         all

@@ -2,7 +2,9 @@
 
 use super::super::{State, Strained};
 use super::{MohrCoulomb, MohrCoulombState, YieldState, compose, equivalent_strain};
-use crate::lanes::{LANES, Lane, Simd, VoigtLanes, any, either, for_each_simd, get, set, whole};
+use crate::lanes::{
+    LANES, Lane, Simd, VoigtLanes, any, either, for_each_simd, get, larger, set, whole,
+};
 use crate::tensor::{self, Voigt};
 
 /// Stresses to return, and what has become of them.
@@ -41,7 +43,6 @@ impl MohrCoulomb {
             return;
         }
         s.changed = true;
-        let (mut unsure, mut count) = ([0u8; LANES], 0);
         if any(&s.state[2][..lanes]) {
             for l in 0..lanes {
                 if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
@@ -49,15 +50,12 @@ impl MohrCoulomb {
                 }
             }
         }
-        for (l, _) in sure[..lanes].iter().enumerate().filter(|l| *l.1 == 0.0) {
-            unsure[count] = l as u8;
-            count += 1;
-        }
+        let count = (sure[..lanes].iter()).fold(0, |n, &sure| n + usize::from(sure == 0.0));
         // Where most yield they are returned where they are; where few do, these are brought together.
         if 3 * count > lanes && !self.corners.has_cutoff() {
             s.plastic |= self.return_in_place(simd, s, &mut sure, lanes);
         } else if count > 0 {
-            s.plastic |= self.return_lanes(simd, s, &unsure[..count]);
+            s.plastic |= self.return_few(simd, s, &sure[..lanes]);
         }
         if s.plastic {
             flow(simd, self, s, lanes);
@@ -81,22 +79,19 @@ impl MohrCoulomb {
     /// Returns the predictors that are not sure; says whether any of them yields.
     fn return_in_place(&self, simd: Simd, s: &mut Strained, sure: &mut Lane, lanes: usize) -> bool {
         sure[lanes..whole(lanes)].fill(1.0);
-        let mut r = Returned {
-            stress: s.stress,
-            ..Returned::default()
-        };
-        return_side_by_side(simd, self, &mut r, lanes);
-        take_over(simd, s, &mut r, sure, lanes);
-        if any(&r.odd[..lanes]) {
-            for l in (0..lanes).filter(|&l| r.odd[l] > 0.0) {
+        // In the place of what is sure comes what has to be returned on its own.
+        let odd = sure;
+        return_unsure(simd, self, s, odd, lanes);
+        if any(&odd[..lanes]) {
+            for l in (0..lanes).filter(|&l| odd[l] > 0.0) {
                 let step = self.return_map(&get(&s.stress, l));
-                r.yielding[l] = f64::from(step.yielding as u8);
-                if r.yielding[l] > 0.0 {
-                    self.keep(s, l, step.stress, step.opening, r.yielding[l]);
+                let yielding = f64::from(step.yielding as u8);
+                if yielding > 0.0 {
+                    self.keep(s, l, step.stress, step.opening, yielding);
                 }
             }
         }
-        any(&r.yielding[..lanes])
+        any(&s.state[3][..lanes])
     }
 
     fn keep(&self, s: &mut Strained, l: usize, stress: Voigt, opening: f64, yielding: f64) {
@@ -105,8 +100,14 @@ impl MohrCoulomb {
         s.state[3][l] = yielding;
     }
 
-    /// Returns the predictors in these lanes; says whether any of them yields.
-    fn return_lanes(&self, simd: Simd, s: &mut Strained, unsure: &[u8]) -> bool {
+    /// The same one after another or, without a cut-off, brought together.
+    fn return_few(&self, simd: Simd, s: &mut Strained, sure: &[f64]) -> bool {
+        let (mut all, mut count) = ([0u8; LANES], 0);
+        for (l, _) in sure.iter().enumerate().filter(|l| *l.1 == 0.0) {
+            all[count] = l as u8;
+            count += 1;
+        }
+        let unsure = &all[..count];
         let mut r = Returned::default();
         for (i, &l) in unsure.iter().enumerate() {
             set(&mut r.stress, i, get(&s.stress, l.into()));
@@ -152,37 +153,57 @@ for_each_simd! {
     }
 }
 
-for_each_simd! {
-    /// [`MohrCoulomb::return_map`] without a cut-off.
-    fn return_side_by_side(model: &MohrCoulomb, r: &mut Returned, lanes: usize) {
-        for l in 0..whole(lanes) {
-            let (principal, ordinary) = tensor::principal_if_ordinary(&get(&r.stress, l));
-            let [largest, _, smallest] = principal.values;
-            let elastic = model.corners.shear_function(largest, smallest) <= 0.0;
-            let found = model.corners.return_without_cutoff(&principal.values);
-            set(&mut r.stress, l, compose(&found.stress, &principal.directions));
-            let yielding = f64::from(found.yielding as u8);
-            r.yielding[l] = either(elastic, 0.0, yielding);
-            r.opening[l] = found.opening;
-            r.odd[l] = either(ordinary, 0.0, 1.0);
+/// A predictor as [`MohrCoulomb::return_map`] returns it without a cut-off.
+struct One {
+    stress: Voigt,
+    /// Number of a [`YieldState`].
+    yielding: f64,
+    opening: f64,
+    /// Whether it has to be returned on its own.
+    odd: bool,
+}
+
+impl One {
+    #[inline(always)]
+    fn of(model: &MohrCoulomb, trial: &Voigt) -> One {
+        let (principal, ordinary) = tensor::principal_if_ordinary(trial);
+        let [largest, _, smallest] = principal.values;
+        let elastic = model.corners.shear_function(largest, smallest) <= 0.0;
+        let found = model.corners.return_without_cutoff(&principal.values);
+        One {
+            stress: compose(&found.stress, &principal.directions),
+            yielding: either(elastic, 0.0, f64::from(found.yielding as u8)),
+            opening: found.opening,
+            odd: !ordinary,
         }
     }
 }
 
 for_each_simd! {
-    /// Takes over what has been returned where a predictor was not sure.
-    fn take_over(s: &mut Strained, r: &mut Returned, sure: &Lane, lanes: usize) {
+    fn return_side_by_side(model: &MohrCoulomb, r: &mut Returned, lanes: usize) {
         for l in 0..whole(lanes) {
+            let one = One::of(model, &get(&r.stress, l));
+            set(&mut r.stress, l, one.stress);
+            (r.yielding[l], r.opening[l]) = (one.yielding, one.opening);
+            r.odd[l] = either(one.odd, 1.0, 0.0);
+        }
+    }
+}
+
+for_each_simd! {
+    /// Returns where predictors are not `sure`, and puts 1 there where one has to be returned on its own, else 0.
+    fn return_unsure(model: &MohrCoulomb, s: &mut Strained, sure: &mut Lane, lanes: usize) {
+        for l in 0..whole(lanes) {
+            let trial = get(&s.stress, l);
+            let one = One::of(model, &trial);
             let unsure = sure[l] == 0.0;
-            r.odd[l] = either(unsure, r.odd[l], 0.0);
-            let returned = unsure & (r.odd[l] == 0.0) & (r.yielding[l] > 0.0);
-            r.yielding[l] = either(returned, r.yielding[l], 0.0);
-            let opened = s.state[2][l] + r.opening[l];
-            let opened = either(opened > 0.0, opened, 0.0);
+            sure[l] = either(unsure & one.odd, 1.0, 0.0);
+            let returned = unsure & !one.odd & (one.yielding > 0.0);
+            let opened = larger(s.state[2][l] + one.opening, 0.0);
             s.state[2][l] = either(returned, opened, s.state[2][l]);
-            s.state[3][l] = either(returned, r.yielding[l], s.state[3][l]);
+            s.state[3][l] = either(returned, one.yielding, s.state[3][l]);
             for k in 0..6 {
-                s.stress[k][l] = either(returned, r.stress[k][l], s.stress[k][l]);
+                s.stress[k][l] = either(returned, one.stress[k], trial[k]);
             }
         }
     }

@@ -89,20 +89,17 @@ pub(super) struct Corners {
     up: f64,
     down: f64,
     half_strength: f64,
-    /// 1 + sin ψ, 1 − sin ψ and 1 over each: shear plane ij flows along (1 + sin ψ) eᵢ − (1 − sin ψ) eⱼ.
+    /// 1 + sin ψ, 1 − sin ψ: shear plane ij flows along (1 + sin ψ) eᵢ − (1 − sin ψ) eⱼ.
     flow_up: f64,
     flow_down: f64,
-    over_flow_up: f64,
-    over_flow_down: f64,
     /// T, or c cot φ.
     tip: f64,
     has_cutoff: bool,
     /// Smallest principal stress where shear plane and cut-off meet.
     foot: f64,
-    /// λ, 2G, 1/2G, ν, and ν/(1 + ν).
+    /// λ, 2G, ν, and ν/(1 + ν).
     lame: f64,
     shear: f64,
-    over_shear: f64,
     poisson: f64,
     poisson_share: f64,
     /// C times the flow direction of plane 13.
@@ -136,14 +133,11 @@ impl Corners {
             half_strength,
             flow_up,
             flow_down,
-            over_flow_up: 1.0 / flow_up,
-            over_flow_down: 1.0 / flow_down,
             tip,
             has_cutoff: cutoff.is_some(),
             foot: (up * tip - 2.0 * half_strength) / down,
             lame,
             shear,
-            over_shear: 1.0 / shear,
             poisson,
             poisson_share: poisson / (1.0 + poisson),
             relief,
@@ -262,7 +256,7 @@ impl Corners {
             stress,
             corner,
             yielding: corner.yielding(),
-            opening: larger(opening, 0.0) * self.over_shear,
+            opening: larger(opening, 0.0) * (1.0 / self.shear),
             violation,
         }
     }
@@ -279,10 +273,11 @@ impl Corners {
     }
 
     /// Sum s of both planes' factors from f₁₃ + f₂₃ = 0, their difference from σ₁ = σ₂.
+    // Products with reciprocals: these are the same for all lanes.
     #[inline(always)]
     fn onto_upper_edge(&self, t: &[f64; 3]) -> Found {
         let sum = (self.shear_function(t[0], t[2]) + self.shear_function(t[1], t[2])) * self.upper;
-        let difference = (t[0] - t[1]) * self.over_flow_up;
+        let difference = (t[0] - t[1]) * (1.0 / self.flow_up);
         let high = 0.5 * (t[0] + t[1]) - sum * 0.5 * (self.relief[0] + self.relief[1]);
         let stress = [high, high, t[2] - sum * self.relief[2]];
         self.shear_result(stress, Corner::UpperEdge, difference - sum * self.shear)
@@ -291,7 +286,7 @@ impl Corners {
     #[inline(always)]
     fn onto_lower_edge(&self, t: &[f64; 3]) -> Found {
         let sum = (self.shear_function(t[0], t[2]) + self.shear_function(t[0], t[1])) * self.lower;
-        let difference = (t[1] - t[2]) * self.over_flow_down;
+        let difference = (t[1] - t[2]) * (1.0 / self.flow_down);
         let low = 0.5 * (t[1] + t[2]) - sum * 0.5 * (self.relief[1] + self.relief[2]);
         let stress = [t[0] - sum * self.relief[0], low, low];
         self.shear_result(stress, Corner::LowerEdge, difference - sum * self.shear)

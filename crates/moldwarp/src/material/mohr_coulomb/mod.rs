@@ -76,9 +76,6 @@ pub struct MohrCoulomb {
     lame: f64,
     shear_modulus: f64,
     bulk_modulus: f64,
-    /// 1/2G and 1/3K, 1/Pa.
-    half_flexibility: f64,
-    bulk_flexibility: f64,
     /// √(1 + sin²φ/3): the cone within the pyramid.
     cone: f64,
     /// Stresses below this count as none, Pa.
@@ -206,16 +203,13 @@ impl MohrCoulomb {
         parameters.check()?;
         let corners = Corners::new(&elastic, &parameters);
         let sin = corners.sin_friction();
-        let bulk_modulus = elastic.lame() + 2.0 / 3.0 * elastic.shear_modulus();
         Ok(MohrCoulomb {
             elastic,
             parameters,
             corners,
             lame: elastic.lame(),
             shear_modulus: elastic.shear_modulus(),
-            bulk_modulus,
-            half_flexibility: 0.5 / elastic.shear_modulus(),
-            bulk_flexibility: 1.0 / (3.0 * bulk_modulus),
+            bulk_modulus: elastic.lame() + 2.0 / 3.0 * elastic.shear_modulus(),
             cone: (1.0 + sin * sin / 3.0).sqrt(),
             negligible: 1e-12 * (elastic.young_modulus + corners.tip()),
         })
@@ -372,7 +366,9 @@ impl MohrCoulomb {
     #[inline(always)]
     fn compliance(&self, stress: &Voigt) -> Voigt {
         let mean = tensor::trace(stress) * (1.0 / 3.0);
-        let (half, bulk) = (self.half_flexibility, mean * self.bulk_flexibility);
+        // Reciprocals are the same for all lanes.
+        let half = 0.5 / self.shear_modulus;
+        let bulk = mean * (1.0 / (3.0 * self.bulk_modulus));
         [
             (stress[0] - mean) * half + bulk,
             (stress[1] - mean) * half + bulk,

@@ -53,10 +53,9 @@ const BENCHES: [Bench; 13] = [
         sets: &[
             "mesh.box.cells=[40, 10, 20]",
             "numerics.time_step=1.1564e-4",
-            "stages.0.steps=800",
         ],
         warm_up: 0,
-        steps: 800,
+        steps: 100,
     },
     Bench {
         name: "column-60",

@@ -121,6 +121,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         }
     });
     // q_n: a trace is three times the mean, and a quarter goes to each node.
+    mean_stress.resize(places.len(), 0.0);
     means_at_nodes(portions, mean_stress, 12.0, |mean| mean);
     let (mean_stress, drift) = (&mean_stress[..], &drift[..]);
     let items = (0..forces.len(), &mut forces[..], portions.shares());

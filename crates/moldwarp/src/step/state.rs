@@ -47,7 +47,7 @@ pub struct Shared {
     pub filling: Vec<f64>,
     /// Mass over volume of all elements attached, kg/m³.
     pub density: Vec<f64>,
-    /// A quarter of the averaged mean stress of the attached cells, Pa.
+    /// A quarter of the averaged mean stress of the attached cells, Pa, where stresses are smoothed.
     pub mean_stress: Vec<f64>,
     /// Where nodes are, m.
     pub places: Vec<Quad>,
@@ -57,17 +57,17 @@ pub struct Shared {
     pub given: Vec<Quad>,
     /// What particles receive of the last kick, m/s².
     pub received: Vec<Quad>,
-    /// Velocities that particles are drawn to by relaxation, m/s.
+    /// Velocities that particles are drawn to by relaxation, m/s; none without it.
     pub grid: Vec<Quad>,
 }
 
 impl Shared {
     /// Of these nodes; what cells still need of the last drift is kept.
     pub(crate) fn renew(&mut self, nodes: &[Node]) {
-        for numbers in [&mut self.filling, &mut self.density, &mut self.mean_stress] {
+        for numbers in [&mut self.filling, &mut self.density] {
             numbers.resize(nodes.len(), 0.0);
         }
-        for vectors in [&mut self.given, &mut self.received, &mut self.grid] {
+        for vectors in [&mut self.given, &mut self.received] {
             vectors.resize(nodes.len(), Quad::default());
         }
         self.moved.clear();

@@ -233,18 +233,9 @@ for_each_simd! {
         least: &mut Lane,
         lanes: usize,
     ) {
-        let increment = &points.increment;
         for l in 0..whole(lanes) {
-            let growth = own.growth[l];
-            least[l] = either(growth < least[l], growth, least[l]);
-            let middle = middle_stress(increment, l);
-            let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);
-            points.middle[l] = middle_volume;
-            points.volume[l] *= growth;
-            let work = tensor::dot(&middle, &get(&increment.strain, l)) * middle_volume;
-            works[0][l] += work;
             let left_out = own.volumetric[l] - own.smoothed[l];
-            works[1][l] += tensor::trace(&middle) * (1.0 / 3.0) * left_out * middle_volume;
+            book_one(l, own.growth[l], left_out, points, works, least);
         }
     }
 }
@@ -258,21 +249,32 @@ for_each_simd! {
         least: &mut Lane,
         lanes: usize,
     ) {
-        let increment = &points.increment;
         for l in 0..whole(lanes) {
             let volumetric = own.volumetric[l];
             let left_out = (volumetric - own.smoothed[l]) * (1.0 - points.separated[l]);
-            let growth = growth(volumetric - left_out);
-            least[l] = either(growth < least[l], growth, least[l]);
-            let middle = middle_stress(increment, l);
-            let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);
-            points.middle[l] = middle_volume;
-            points.volume[l] *= growth;
-            let work = tensor::dot(&middle, &get(&increment.strain, l)) * middle_volume;
-            works[0][l] += work;
-            works[1][l] += tensor::trace(&middle) * (1.0 / 3.0) * left_out * middle_volume;
+            book_one(l, growth(volumetric - left_out), left_out, points, works, least);
         }
     }
+}
+
+/// `left_out` is the volumetric strain that smoothing has taken away.
+#[inline(always)]
+fn book_one(
+    l: usize,
+    growth: f64,
+    left_out: f64,
+    points: &mut Points,
+    works: &mut Works,
+    least: &mut Lane,
+) {
+    let increment = &points.increment;
+    least[l] = either(growth < least[l], growth, least[l]);
+    let middle = middle_stress(increment, l);
+    let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);
+    works[0][l] += tensor::dot(&middle, &get(&increment.strain, l)) * middle_volume;
+    works[1][l] += tensor::trace(&middle) * (1.0 / 3.0) * left_out * middle_volume;
+    points.middle[l] = middle_volume;
+    points.volume[l] *= growth;
 }
 
 for_each_simd! {
@@ -280,8 +282,9 @@ for_each_simd! {
     fn book_plastic(points: &Points, works: &mut Works, lanes: usize) {
         let increment = &points.increment;
         for l in 0..whole(lanes) {
-            let (middle, plastic_strain) = (middle_stress(increment, l), get(&increment.plastic_strain, l));
-            let plastic = tensor::dot(&middle, &plastic_strain) * points.middle[l];
+            let plastic_strain = get(&increment.plastic_strain, l);
+            let plastic = tensor::dot(&middle_stress(increment, l), &plastic_strain);
+            let plastic = plastic * points.middle[l];
             works[0][l] -= plastic;
             works[2][l] += plastic;
         }

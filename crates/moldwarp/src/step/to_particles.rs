@@ -195,9 +195,9 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let free = first + h * gain + 0.5 * h * h * square;
     let mut kinetic = free;
     if blend > 0.0 {
-        for (grid, node) in sim.shared.grid.iter_mut().zip(&sim.nodes) {
-            *grid = (node.velocity + node.received * h).into();
-        }
+        let own = |node: &Node| Quad::from(node.velocity + node.received * h);
+        sim.shared.grid.clear();
+        sim.shared.grid.extend(sim.nodes.iter().map(own));
         let [mixed, grid] = exchange(
             sim,
             |shared| &shared.grid,

@@ -4,6 +4,7 @@ mod common;
 
 use common::{Bench, COLUMN};
 use serde_json::Value;
+use std::io::Write;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -151,6 +152,11 @@ fn runs_that_are_stopped_interrupted_and_cut_off() {
             .success()
     );
     assert_eq!(run.wait().unwrap().code(), Some(130));
+    // Such a run may have warnings, too.
+    let log = std::fs::OpenOptions::new()
+        .append(true)
+        .open(bench.path("out/long/log.txt"));
+    writeln!(log.unwrap(), "     9.9 s  warning: of something").unwrap();
     let interrupted = json(&bench, &["out/long"]);
     assert_eq!(interrupted["state"], "interrupted");
     let checkpoint = &interrupted["checkpoints"][0];

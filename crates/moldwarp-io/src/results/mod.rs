@@ -202,10 +202,11 @@ fn state(
     if let Err(std::fs::TryLockError::WouldBlock) = file.try_lock_shared() {
         return Ok((State::AtWork, None));
     }
-    let last = log
-        .last()
-        .and_then(|line| line.split_once(" s  "))
-        .map(|l| l.1);
+    // Warnings follow what has ended a run.
+    let said = log.iter().rev().filter_map(|line| line.split_once(" s  "));
+    let last = said
+        .map(|line| line.1)
+        .find(|line| !line.starts_with("warning: "));
     Ok(match last {
         Some(line) if line.starts_with("interrupted by ") => {
             (State::Interrupted, Some(line.to_owned()))

@@ -155,7 +155,7 @@ fn runs_that_are_stopped_interrupted_and_cut_off() {
     // Such a run may have warnings, too.
     let log = std::fs::OpenOptions::new()
         .append(true)
-        .open(bench.path("out/long/log.txt"));
+        .open(bench.path("out/long/run.log"));
     writeln!(log.unwrap(), "     9.9 s  warning: of something").unwrap();
     let interrupted = json(&bench, &["out/long"]);
     assert_eq!(interrupted["state"], "interrupted");

@@ -128,13 +128,13 @@ impl Particles {
         self.columns_mut().for_each(|column| retain(column, keep));
     }
 
-    /// The numbers that a step works with, one array a component.
-    pub(crate) fn working_columns_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        (self.position.columns_mut().iter_mut())
+    /// Works on the numbers that a step changes, one array a component; two threads share them.
+    pub(crate) fn for_working_columns(&mut self, work: impl Fn(&mut Vec<f64>) + Sync) {
+        let of_motion = (self.position.columns_mut().iter_mut())
             .chain(self.velocity.columns_mut())
-            .chain(self.stress.columns_mut())
-            .chain(self.state.columns_mut())
-            .chain([&mut self.volume, &mut self.mass])
+            .chain([&mut self.volume, &mut self.mass]);
+        let of_material = (self.stress.columns_mut().iter_mut()).chain(self.state.columns_mut());
+        rayon::join(|| of_motion.for_each(&work), || of_material.for_each(&work));
     }
 
     /// All numbers of particles, one array a component.

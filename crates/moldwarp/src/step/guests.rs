@@ -86,7 +86,7 @@ impl Guests {
         id.reserve_exact(most);
         body.reserve_exact(most);
         element.reserve_exact(most);
-        (particles.working_columns_mut()).for_each(|column| column.reserve_exact(most));
+        particles.for_working_columns(|column| column.reserve_exact(most));
     }
 
     /// Most tiles that they can take.
@@ -105,7 +105,7 @@ impl Guests {
         copy(id, &self.homes);
         copy(body, &self.homes);
         copy(element, &self.homes);
-        each_column(particles, |column| copy(column, &self.homes));
+        particles.for_working_columns(|column| copy(column, &self.homes));
         for &p in &self.homes {
             (particles.mass[p as usize], particles.volume[p as usize]) = (0.0, 0.0);
         }
@@ -122,27 +122,8 @@ impl Guests {
         put_back(id, &self.homes);
         put_back(body, &self.homes);
         put_back(element, &self.homes);
-        each_column(particles, |column| put_back(column, &self.homes));
+        particles.for_working_columns(|column| put_back(column, &self.homes));
     }
-}
-
-/// Works on all columns that the step changes; two threads share them.
-fn each_column(particles: &mut Particles, work: impl Fn(&mut Vec<f64>) + Sync) {
-    let Particles {
-        position,
-        velocity,
-        stress,
-        state,
-        volume,
-        mass,
-        ..
-    } = particles;
-    let of_motion = (position.columns_mut().iter_mut()).chain(velocity.columns_mut());
-    let of_material = (stress.columns_mut().iter_mut()).chain(state.columns_mut());
-    rayon::join(
-        || of_motion.chain([volume, mass]).for_each(&work),
-        || of_material.for_each(&work),
-    );
 }
 
 fn copy<T: Copy>(values: &mut Vec<T>, homes: &[u32]) {

@@ -12,10 +12,11 @@ mod tiles;
 
 pub use tiles::{ByTile, Contents, Pile, Tiles};
 
+use crate::parallel::Split;
 use std::ops::{Deref, DerefMut};
 
-/// Lanes of a window.
-pub const LANES: usize = 32;
+/// Lanes of a tile: as many as the widest instructions take at a time.
+pub const LANES: usize = 8;
 
 /// A number for each lane. (Aligned: vectors that lie across two lines of the cache take several times as long.)
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,32 +169,30 @@ pub fn load<const N: usize>(lanes: &mut [Lane; N], columns: &[&[f64]; N], start:
 }
 
 #[inline(always)]
-#[expect(clippy::manual_memcpy)] // as said inside
 pub fn load_one(lane: &mut Lane, column: &[f64], start: usize) {
     let from = &column[start..];
     match from.first_chunk::<LANES>() {
-        // Vector by vector: the library's copy takes longer to be called than to copy.
-        Some(all) => {
-            let (from, to) = (all.as_chunks::<8>().0, lane.as_chunks_mut::<8>().0);
-            for k in 0..LANES / 8 {
-                to[k] = from[k];
-            }
-        }
-        None => lane[..from.len()].copy_from_slice(from),
+        Some(all) => **lane = *all,
+        None => load_last(lane, from),
     }
 }
 
-/// Particles from the end of a slot to those that should be on their way from memory: the first cache has no room for more
-/// than the slot's own, so they come to the second.
-pub const AHEAD: usize = 2 * LANES;
+/// Apart, or both copies would become one by a call of the library's, which takes longer than to copy.
+#[cold]
+#[inline(never)]
+fn load_last(lane: &mut Lane, from: &[f64]) {
+    lane[..from.len()].copy_from_slice(from);
+}
+
+/// Particles from the end of a slot to those that should be on their way from memory: the first cache has no room for
+/// more, so they come to the second.
+pub const AHEAD: usize = 64;
 
 /// Has the numbers of the particles of a slot fetched from memory, to be near when it is their turn.
 #[inline(always)]
 pub fn prefetch<const N: usize>(columns: &[&[f64]; N], start: usize) {
     for column in columns {
-        for line in 0..LANES / 8 {
-            prefetch_line(column.as_ptr().wrapping_add(start + 8 * line));
-        }
+        prefetch_line(column.as_ptr().wrapping_add(start));
     }
 }
 
@@ -215,38 +214,136 @@ pub fn prefetch_bodies(bodies: &[u16], start: usize) {
     prefetch_line(bodies.as_ptr().wrapping_add(start));
 }
 
-/// Copies the first numbers of lanes to the particles from `start` on.
-#[inline(always)]
-pub fn store<const N: usize>(
-    lanes: &[Lane; N],
-    columns: &mut [&mut [f64]; N],
-    start: usize,
-    count: usize,
-) {
-    for k in 0..N {
-        store_one(&lanes[k], columns[k], start, count);
+/// Numbers of particles, one array a component, all of the same length.
+pub struct Columns<'a, const N: usize>([&'a mut [f64]; N]);
+
+impl<'a, const N: usize> Columns<'a, N> {
+    pub fn new(columns: [&'a mut [f64]; N]) -> Columns<'a, N> {
+        assert!(
+            columns
+                .iter()
+                .all(|column| column.len() == columns[0].len())
+        );
+        Columns(columns)
+    }
+
+    fn len(&self) -> usize {
+        self.0[0].len()
+    }
+
+    /// The number of a component at a place.
+    #[inline]
+    pub fn at(&self, component: usize, place: usize) -> f64 {
+        self.0[component][place]
+    }
+
+    /// The numbers of a component.
+    #[inline]
+    pub fn column(&self, component: usize) -> &[f64] {
+        self.0[component]
+    }
+
+    /// Copies the numbers of particles from `start` on to lanes: as many as there are lanes or particles.
+    #[inline(always)]
+    pub fn load(&self, lanes: &mut [Lane; N], start: usize) {
+        if self.len() < LANES || start > self.len() - LANES {
+            return self.load_last(lanes, start);
+        }
+        for (lane, column) in lanes.iter_mut().zip(&self.0) {
+            // SAFETY: all columns have the length that has been looked at.
+            **lane = unsafe { *column.as_ptr().add(start).cast() };
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn load_last(&self, lanes: &mut [Lane; N], start: usize) {
+        for (lane, column) in lanes.iter_mut().zip(&self.0) {
+            load_last(lane, &column[start..]);
+        }
+    }
+
+    /// Has the numbers of particles fetched from memory, to be near when it is their turn.
+    #[inline(always)]
+    pub fn prefetch(&self, start: usize) {
+        prefetch(&self.0.each_ref().map(|column| &**column), start);
+    }
+
+    /// Copies the first numbers of lanes to the particles from `start` on.
+    #[inline]
+    pub fn store(&mut self, simd: Simd, lanes: &[Lane; N], start: usize, count: usize) {
+        assert!(count <= LANES && start <= self.len() && count <= self.len() - start);
+        #[cfg(target_arch = "x86_64")]
+        if simd.has_avx512() {
+            // SAFETY: the processor has the instructions.
+            return unsafe { self.store_avx512(lanes, start, count) };
+        }
+        let _ = simd;
+        for (lane, column) in lanes.iter().zip(&mut self.0) {
+            let to = &mut column[start..start + count];
+            match to.first_chunk_mut::<LANES>() {
+                Some(all) => *all = **lane,
+                None => to.copy_from_slice(&lane[..count]),
+            }
+        }
+    }
+
+    /// The library's copy of so few numbers takes longer to be called than to copy.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f")]
+    fn store_avx512(&mut self, lanes: &[Lane; N], start: usize, count: usize) {
+        use std::arch::x86_64::{_mm512_loadu_pd, _mm512_mask_storeu_pd};
+        let held = (1u32 << count) - 1;
+        for (lane, column) in lanes.iter().zip(&mut self.0) {
+            for (k, eight) in lane.as_chunks::<8>().0.iter().enumerate() {
+                // SAFETY: no more are written than there are, as has been looked at.
+                unsafe {
+                    let to = column.as_mut_ptr().add(start + 8 * k);
+                    let eight = _mm512_loadu_pd(eight.as_ptr());
+                    _mm512_mask_storeu_pd(to, (held >> (8 * k)) as u8, eight);
+                }
+            }
+        }
     }
 }
 
-#[inline(always)]
-pub fn store_one(lane: &Lane, column: &mut [f64], start: usize, count: usize) {
-    let (groups, rest) = column[start..start + count].as_chunks_mut::<8>();
-    let (from, _) = lane.as_chunks::<8>();
-    let whole = groups.len();
-    for (to, from) in groups.iter_mut().zip(from) {
-        *to = *from;
+impl<const N: usize> Split for Columns<'_, N> {
+    fn count(&self) -> usize {
+        self.len()
     }
-    if !rest.is_empty() {
-        rest.copy_from_slice(&from[whole][..rest.len()]);
+    fn split(self, at: usize) -> (Self, Self) {
+        let (low, high) = self.0.split(at);
+        (Columns(low), Columns(high))
     }
 }
 
-/// Lanes that a loop works on to have so many: vector instructions do eight at a time, and what is left over
-/// would be done one by one. What the additional ones hold is a number from before, and goes nowhere.
+/// 1 in lanes that hold a particle, 0 in the rest of them.
+pub type Held = Lane;
+
+/// The first lanes hold one. (Numbers to compare with, since compilers make little of numbers of lanes.)
+#[inline]
+pub fn held(count: usize) -> &'static Held {
+    &HELD[count]
+}
+
+static HELD: [Held; LANES + 1] = {
+    let mut held = [Lane::of(0.0); LANES + 1];
+    let mut count = 0;
+    while count <= LANES {
+        let mut l = 0;
+        while l < count {
+            held[count].0[l] = 1.0;
+            l += 1;
+        }
+        count += 1;
+    }
+    held
+};
+
+/// Has zero in lanes that hold nothing.
 #[inline(always)]
-pub fn whole(lanes: usize) -> usize {
-    // Written so that the compiler sees that it is a multiple of eight and no more than there are.
-    lanes.div_ceil(8).min(LANES / 8) * 8
+pub fn clear_rest(lane: &mut Lane, held: &Held) {
+    (0..LANES).for_each(|l| lane[l] = either(held[l] > 0.0, lane[l], 0.0));
 }
 
 /// The number of each component in a lane.
@@ -308,10 +405,26 @@ mod tests {
     fn numbers_go_to_lanes_and_back() {
         let numbers: Vec<f64> = (0..50).map(f64::from).collect();
         let mut lane = Lane::of(0.0);
+        load_one(&mut lane, &numbers, 45);
+        assert_eq!(lane[..5], numbers[45..]);
         load_one(&mut lane, &numbers, 30);
-        assert_eq!(lane[..20], numbers[30..]);
-        let mut to = vec![0.0; 50];
-        store_one(&lane, &mut to, 3, 19);
-        assert_eq!((to[2], &to[3..22], to[22]), (0.0, &numbers[30..49], 0.0));
+        assert_eq!(lane[..], numbers[30..38]);
+        for length in [9, 50] {
+            for simd in Simd::NAMES.iter().filter_map(|name| Simd::named(name)) {
+                let (mut to, mut other) = (vec![0.0; length], numbers[..length].to_vec());
+                let mut columns = Columns::new([&mut to[..], &mut other]);
+                columns.store(simd, &[lane, lane], 3, 5);
+                let mut back = [Lane::of(0.0); 2];
+                columns.load(&mut back, 1);
+                columns.load(&mut back, 2);
+                for k in 0..2 {
+                    assert_eq!(
+                        (columns.at(k, 2), &back[k][1..6]),
+                        (numbers[2 * k], &lane[..5])
+                    );
+                }
+                assert_eq!((to[8], other[8]), (0.0, 8.0));
+            }
+        }
     }
 }

@@ -106,14 +106,7 @@ fn locate(sim: &mut Simulation) -> Crossing {
         for (number, tile) in tiles {
             shapes.enter(simd, &mut corners, active.tile_nodes(number), places);
             for slot in tile.slots() {
-                look(
-                    simd,
-                    &mut motion,
-                    &shapes,
-                    &position,
-                    slot.start,
-                    slot.len(),
-                );
+                look(simd, &mut motion, &shapes, &position, slot.start);
                 let own = &mut elements[slot.start - first..];
                 motion.search(&search, slot, own, &mut crossing, |_| ());
             }

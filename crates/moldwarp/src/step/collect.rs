@@ -17,7 +17,7 @@ use std::ops::{AddAssign, Range};
 
 /// Portions that cells are cut into, unless they would have fewer tiles than [`LEAST`].
 const PORTIONS: usize = 32;
-const LEAST: usize = 8;
+const LEAST: usize = 32;
 /// Most quads that a node collects at a time.
 const MOST: usize = 2;
 

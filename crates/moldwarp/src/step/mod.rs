@@ -67,7 +67,7 @@ use crate::stop::Stop;
 /// Cells or nodes that one thread works on at a time.
 const BLOCK: usize = 256;
 /// Tiles of cells that one thread works on at a time.
-const TILES: usize = 8;
+const TILES: usize = 32;
 
 impl Simulation {
     /// Advances positions, stresses and the mesh by `dt` seconds.

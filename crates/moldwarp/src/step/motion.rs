@@ -7,7 +7,10 @@ use crate::Mat3;
 use crate::Vec3;
 use crate::boundary::Outflow;
 use crate::contact::{Contacts, Fields};
-use crate::lanes::{Lane, any, either, for_each_simd, get, load, load_one, set, store, sum, whole};
+use crate::lanes::{
+    Columns, Held, LANES, Lane, any, clear_rest, either, for_each_simd, get, load, load_one, set,
+    sum,
+};
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{First, Sum};
 use std::ops::Range;
@@ -43,60 +46,15 @@ fn is_inside(n: [f64; 4]) -> bool {
 }
 
 for_each_simd! {
-    /// Goes to the particles of the next slot.
-    pub(super) fn fetch(
-        motion: &mut Motion,
-        position: &[&[f64]; 3],
-        start: usize,
-        mass: &[f64],
-        lanes: usize,
-    ) {
-        load(&mut motion.position, position, start);
-        load_one(&mut motion.mass, mass, 0);
-        motion.mass[lanes..whole(lanes)].fill(0.0);
-    }
-}
-
-for_each_simd! {
-    /// Moves particles.
-    pub(super) fn go_along(
-        motion: &mut Motion,
-        shapes: &Shapes,
-        deformation: &Deformation,
-        gravity: Vec3,
-        position: &mut [&mut [f64]; 3],
-        start: usize,
-        lanes: usize,
-    ) {
-        for l in 0..whole(lanes) {
-            let mut x = Vec3::from_array(get(&motion.position, l));
-            // Σ N_i Δu_i is Δu of node 0 and, from there on, ∇Δu times the way.
-            let gradient = Mat3::from_cols_array(&get(&deformation.gradient, l));
-            let step = Vec3::from_array(get(&deformation.origin, l)) + gradient * shapes.arm(l, x);
-            x += step;
-            set(&mut motion.position, l, x.to_array());
-            motion.work[l] += motion.mass[l] * gravity.dot(step);
-            let n = shapes.at(l, x);
-            set(&mut motion.shapes, l, n);
-            // Where a guest comes from lies a particle without mass.
-            let stays = is_inside(n) | (motion.mass[l] == 0.0);
-            motion.left[l] = either(stays, 0.0, 1.0);
-        }
-        store(&motion.position, position, start, lanes);
-    }
-}
-
-for_each_simd! {
     /// Finds out which particles have left their elements, as these are now.
     pub(super) fn look(
         motion: &mut Motion,
         shapes: &Shapes,
         position: &[&[f64]; 3],
         start: usize,
-        lanes: usize,
     ) {
         load(&mut motion.position, position, start);
-        for l in 0..whole(lanes) {
+        for l in 0..LANES {
             let x = Vec3::from_array(get(&motion.position, l));
             motion.left[l] = either(is_inside(shapes.at(l, x)), 0.0, 1.0);
         }
@@ -104,6 +62,37 @@ for_each_simd! {
 }
 
 impl Motion {
+    /// Fetches particles.
+    #[inline(always)]
+    pub fn fetch(&mut self, position: &Columns<3>, mass: &[f64], start: usize, held: &Held) {
+        position.load(&mut self.position, start);
+        load_one(&mut self.mass, mass, 0);
+        clear_rest(&mut self.mass, held);
+    }
+
+    /// Moves a particle.
+    #[inline(always)]
+    pub fn go_along(
+        &mut self,
+        shapes: &Shapes,
+        deformation: &Deformation,
+        gravity: Vec3,
+        l: usize,
+    ) {
+        let mut x = Vec3::from_array(get(&self.position, l));
+        // Σ N_i Δu_i is Δu of node 0 and, from there on, ∇Δu times the way.
+        let gradient = Mat3::from_cols_array(&get(&deformation.gradient, l));
+        let step = Vec3::from_array(get(&deformation.origin, l)) + gradient * shapes.arm(l, x);
+        x += step;
+        set(&mut self.position, l, x.to_array());
+        self.work[l] += self.mass[l] * gravity.dot(step);
+        let n = shapes.at(l, x);
+        set(&mut self.shapes, l, n);
+        // Where a guest comes from lies a particle without mass.
+        let stays = is_inside(n) | (self.mass[l] == 0.0);
+        self.left[l] = either(stays, 0.0, 1.0);
+    }
+
     /// Finds the elements of the particles of a slot that have left theirs. Those that have come to another one have
     /// no mass here any more, and `gone` is told their lanes.
     #[inline]

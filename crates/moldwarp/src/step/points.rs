@@ -5,14 +5,18 @@
 //! them.
 
 use super::corners::NO_CORNERS;
-use super::motion::{self, Crossing, Motion, Search, go_along};
+use super::motion::{Crossing, Motion, Search};
 use super::shapes::Shapes;
 use super::state::Summed;
 use super::strain::{Deformation, own_work};
-use super::stress::{Arrays as Stressed, Stresses};
+use super::stress::{Arrays as Stressed, Booked, Points, Stresses};
 use super::sums::{self, Arrays as SumArrays, Asked, Counted, Given as Sharing, Sums};
-use super::to_particles::{Before, Given, Kick};
-use crate::lanes::{self, AHEAD, ByTile, Lane, load, prefetch, prefetch_bodies, store};
+use super::to_particles::{Given, Kick, Pending};
+use crate::Vec3;
+use crate::lanes::{
+    self, AHEAD, ByTile, Columns, Held, LANES, Lane, alike, for_each_simd, get, held, prefetch,
+    prefetch_bodies, set,
+};
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
@@ -72,13 +76,14 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         simd,
     };
     let stressed = (
-        stress.components_mut(),
-        state.components_mut(),
-        &mut volume[..],
+        Columns::new(stress.components_mut()),
+        Columns::new(state.components_mut()),
+        Columns::new([volume]),
     );
-    type Vectors<'a> = [&'a mut [f64]; 3];
-    type Arrays<'a> = (Stressed<'a>, (Vectors<'a>, Vectors<'a>), &'a mut [u32]);
-    let vectors = (position.components_mut(), velocity.components_mut());
+    let vectors = (
+        Columns::new(position.components_mut()),
+        Columns::new(velocity.components_mut()),
+    );
     let arrays: Arrays = (stressed, vectors, &mut element[..]);
     let smoothing = plan.numerics.smoothing;
     let differs = sums::differs(elasticity, asked.reference);
@@ -87,7 +92,12 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     let work = |block: ByTile<Arrays, (SumArrays, Sharing)>| {
         let first = block.first();
         let tiles = block.each();
-        let (mut stressed, (mut position, mut velocity), elements) = block.particles;
+        let (stressed, (position, velocity), elements) = block.particles;
+        let mut arrays = Own {
+            stressed,
+            position,
+            velocity,
+        };
         let (records, (to_nodes, to_pairs)) = block.cells;
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
         let (mut shapes, mut sums) = (Shapes::default(), Sums::default());
@@ -107,45 +117,45 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             if stays {
                 sums.enter(&mut records);
             }
+            let cells = Cells {
+                shapes: &shapes,
+                deformation: &deformation,
+            };
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let bodies = &body[slot.clone()];
-                let next = slot.end - first + AHEAD;
-                // Not all at once: only so many lines can be on their way.
-                prefetch(&position.each_ref().map(|x| &**x), next);
-                prefetch(&velocity.each_ref().map(|v| &**v), next);
+                let alike = alike(bodies);
+                arrays.prefetch(slot.end - first + AHEAD);
                 prefetch(&[mass], slot.end + AHEAD);
                 prefetch_bodies(body, slot.end + AHEAD);
-                let columns = position.each_ref().map(|x| &**x);
-                motion::fetch(
+                stress.look_up(bodies, alike, &arrays.stressed, start);
+                begin(
                     simd,
                     &mut motion,
-                    &columns,
-                    start,
+                    &mut speeds,
+                    &mut stress.points,
+                    &arrays,
                     &mass[slot.start..],
-                    lanes,
+                    &cells,
+                    (&kick, given.pending),
+                    start,
+                    held(lanes),
                 );
-                load(&mut speeds, &velocity.each_ref().map(|v| &**v), start);
-                let before = Before {
-                    position: &motion.position,
-                    mass: &motion.mass,
-                };
-                kick.give(simd, &given, &before, &mut speeds, &shapes, lanes);
-                store(&speeds, &mut velocity, start, lanes);
-                stress.update(&deformation, slot.clone(), bodies, &mut stressed, first);
-                prefetch(&stressed.0.each_ref().map(|s| &**s), next);
-                prefetch(&stressed.1.each_ref().map(|s| &**s), next);
-                prefetch(&[&*stressed.2], next);
-                go_along(
+                stress.update(&deformation, slot.start, bodies, alike);
+                end(
                     simd,
                     &mut motion,
-                    &shapes,
-                    &deformation,
+                    &speeds,
+                    &mut stress.points,
+                    &mut stress.booked,
+                    &mut kick,
+                    &cells,
                     gravity,
-                    &mut position,
-                    start,
-                    lanes,
                 );
+                stress.book_plastic();
+                (stress.points).keep(simd, &mut arrays.stressed, start, lanes);
+                (arrays.position).store(simd, &motion.position, start, lanes);
+                arrays.velocity.store(simd, &speeds, start, lanes);
                 if !stays {
                     continue;
                 }
@@ -162,7 +172,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     stress: &stress.points.increment.stress,
                     state: &stress.points.increment.state,
                 };
-                sums.add(&asked, &points, bodies, &mut records);
+                sums.add(&asked, &points, bodies, alike, &mut records);
             }
             if stays {
                 let pairs = pairs.tile_pairs(number);
@@ -184,4 +194,83 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     cells.worked = [sums[3], sums[4]];
     cells.summed = if stays { Summed::All } else { Summed::Nothing };
     (least.0 <= 0.0, crossing)
+}
+
+type Arrays<'a> = (
+    Stressed<'a>,
+    (Columns<'a, 3>, Columns<'a, 3>),
+    &'a mut [u32],
+);
+
+/// What the pass changes of particles.
+struct Own<'a> {
+    stressed: Stressed<'a>,
+    position: Columns<'a, 3>,
+    velocity: Columns<'a, 3>,
+}
+
+impl Own<'_> {
+    #[inline(always)]
+    fn prefetch(&self, start: usize) {
+        let (stresses, states, volumes) = &self.stressed;
+        self.position.prefetch(start);
+        self.velocity.prefetch(start);
+        stresses.prefetch(start);
+        states.prefetch(start);
+        volumes.prefetch(start);
+    }
+}
+
+/// The cells of a tile.
+struct Cells<'a> {
+    shapes: &'a Shapes,
+    deformation: &'a Deformation,
+}
+
+for_each_simd! {
+    /// Fetches the particles of a slot, gives them what they have not received yet, and turns their stresses.
+    fn begin(
+        motion: &mut Motion,
+        speeds: &mut [Lane; 3],
+        points: &mut Points,
+        arrays: &Own,
+        mass: &[f64],
+        cells: &Cells,
+        kick: (&Kick, Option<Pending>),
+        start: usize,
+        held: &Held,
+    ) {
+        motion.fetch(&arrays.position, mass, start, held);
+        arrays.velocity.load(speeds, start);
+        points.fetch(&arrays.stressed, start, held);
+        if let (kick, Some(pending)) = kick {
+            for l in 0..LANES {
+                let arm = cells.shapes.arm(l, Vec3::from_array(get(&motion.position, l)));
+                let v = kick.receive(l, arm, Vec3::from_array(get(speeds, l)), pending);
+                set(speeds, l, v.to_array());
+            }
+        }
+        for l in 0..LANES {
+            points.turn(cells.deformation, l);
+        }
+    }
+}
+
+for_each_simd! {
+    /// Moves particles that have their new stresses.
+    fn end(
+        motion: &mut Motion,
+        speeds: &[Lane; 3],
+        points: &mut Points,
+        booked: &mut Booked,
+        kick: &mut Kick,
+        cells: &Cells,
+        gravity: Vec3,
+    ) {
+        for l in 0..LANES {
+            points.book(booked, l);
+            kick.count(l, motion.mass[l], Vec3::from_array(get(speeds, l)));
+            motion.go_along(cells.shapes, cells.deformation, gravity, l);
+        }
+    }
 }

@@ -47,8 +47,8 @@ pub(super) struct Deformation {
     pub origin: [Lane; 3],
     /// Trace of the gradient in the middle of the step ([`midpoint`]).
     pub volumetric: Lane,
-    /// The same, smoothed.
-    pub smoothed: Lane,
+    /// The part of it that smoothing takes away.
+    pub left_out: Lane,
     /// Strain in the middle of the step with the smoothed trace.
     pub strain: VoigtLanes,
     /// Rotation of the step, by columns.
@@ -63,7 +63,7 @@ impl Default for Deformation {
             gradient: [Lane::of(0.0); 9],
             origin: [Lane::of(0.0); 3],
             volumetric: Lane::of(0.0),
-            smoothed: Lane::of(0.0),
+            left_out: Lane::of(0.0),
             strain: [Lane::of(0.0); 6],
             turn: [Lane::of(0.0); 9],
             growth: Lane::of(1.0),
@@ -82,25 +82,39 @@ impl Deformation {
         shared: &Shared,
         smoothing: Smoothing,
     ) {
-        load_and_sum(simd, corners, &mut self.smoothed, nodes, &shared.moved);
-        deform(simd, corners, shapes, smoothing != Smoothing::Off, self);
+        let mut sum = Lane::of(0.0);
+        load_and_sum(simd, corners, &mut sum, nodes, &shared.moved);
+        deform(
+            simd,
+            corners,
+            &sum,
+            shapes,
+            smoothing != Smoothing::Off,
+            self,
+        );
     }
 }
 
 for_each_simd! {
-    fn deform(moved: &Corners, shapes: &Shapes, smooth: bool, d: &mut Deformation) {
+    fn deform(
+        moved: &Corners,
+        averaged: &Lane,
+        shapes: &Shapes,
+        smooth: bool,
+        d: &mut Deformation,
+    ) {
         for l in 0..LANES {
             let corners = all_corners(moved, l);
             let gradient = gradient(&shapes.gradients(l), corners);
             let midpoint = midpoint(&gradient);
             let volumetric = volumetric(&gradient);
-            let smoothed = either(smooth, 0.25 * d.smoothed[l], volumetric);
+            let smoothed = either(smooth, 0.25 * averaged[l], volumetric);
             let mut strain = tensor::strain(&midpoint);
             let change = (smoothed - volumetric) * (1.0 / 3.0);
             (0..3).for_each(|k| strain[k] += change);
             set(&mut d.gradient, l, gradient.to_cols_array());
             set(&mut d.origin, l, corners[0].to_array());
-            (d.volumetric[l], d.smoothed[l]) = (volumetric, smoothed);
+            (d.volumetric[l], d.left_out[l]) = (volumetric, volumetric - smoothed);
             d.growth[l] = growth(smoothed);
             set(&mut d.strain, l, strain);
             set(&mut d.turn, l, tensor::spin_rotation(&midpoint).to_cols_array());

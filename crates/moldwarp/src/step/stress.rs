@@ -8,23 +8,17 @@ pub(super) use external::ask;
 use super::strain::{Deformation, growth};
 use crate::Mat3;
 use crate::lanes::{
-    self, LANES, Lane, Simd, alike, any, either, for_each_simd, get, load, load_one, set, store,
-    store_one, whole,
+    self, Columns, Held, LANES, Lane, Simd, any, clear_rest, either, for_each_simd, get, set,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
 use crate::parallel::{Smallest, Sum};
 use crate::plan::Plan;
 use crate::tensor::{self, Voigt};
-use std::ops::Range;
 
 /// Stresses, state variables and volumes of some particles.
-pub(super) type Arrays<'a> = (
-    [&'a mut [f64]; 6],
-    [&'a mut [f64]; STATE_SIZE],
-    &'a mut [f64],
-);
+pub(super) type Arrays<'a> = (Columns<'a, 6>, Columns<'a, STATE_SIZE>, Columns<'a, 1>);
 
-/// Particles side by own.
+/// Particles side by side.
 pub(super) struct Points {
     pub increment: Strained,
     pub volume: Lane,
@@ -36,10 +30,11 @@ pub(super) struct Points {
     alike: bool,
     /// Volume in the middle of the step, m³.
     middle: Lane,
+    /// Volume after the step over that before.
+    growth: Lane,
+    /// The volumetric strain that smoothing has taken away.
+    left_out: Lane,
 }
-
-/// Works on particles side by side: [elastic, left out by smoothing, plastic], J.
-type Works = [Lane; 3];
 
 /// What the stage does to cells one after another.
 pub(super) struct Stresses<'a> {
@@ -47,7 +42,13 @@ pub(super) struct Stresses<'a> {
     answers: &'a Answers,
     simd: Simd,
     pub points: Points,
-    works: Works,
+    pub booked: Booked,
+}
+
+/// Works on particles side by side.
+pub(super) struct Booked {
+    /// [elastic, left out by smoothing, plastic], J.
+    works: [Lane; 3],
     /// Volume after the step over that before.
     least: Lane,
 }
@@ -59,49 +60,49 @@ impl<'a> Stresses<'a> {
             answers,
             simd,
             points: Points::default(),
-            works: [Lane::of(0.0); 3],
-            least: Lane::of(f64::INFINITY),
+            booked: Booked {
+                works: [Lane::of(0.0); 3],
+                least: Lane::of(f64::INFINITY),
+            },
         }
     }
 
-    /// New stresses, state variables and volumes of the particles of a slot of these cells; `first` is the first
-    /// of the arrays.
+    /// Finds out which particles of a slot are separated; `alike` if they are all of one body.
     #[inline]
-    pub fn update(
-        &mut self,
-        own: &Deformation,
-        slot: Range<usize>,
-        body: &[u16],
-        arrays: &mut Arrays,
-        first: usize,
-    ) {
+    pub fn look_up(&mut self, body: &[u16], alike: bool, arrays: &Arrays, start: usize) {
+        let plan = self.plan;
+        let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
+        self.points.look_up(body, alike, model, arrays, start);
+    }
+
+    /// New stresses and state variables of the particles of a slot of these cells, whose stresses have turned.
+    #[inline]
+    pub fn update(&mut self, own: &Deformation, place: usize, body: &[u16], alike: bool) {
         let Stresses {
             plan,
             answers,
             simd,
             points,
-            works,
-            least,
+            ..
         } = self;
         let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
-        let (start, place, lanes) = (slot.start - first, slot.start, slot.len());
-        points.look_up(body, model, arrays, start);
-        strain(*simd, own, points, arrays, start, lanes);
-        points.update(*simd, body, model, (answers, place));
-        match points.apart {
-            true => book_apart(*simd, own, points, works, least, lanes),
-            false => book(*simd, own, points, works, least, lanes),
+        points.strain(*simd, own);
+        points.update(*simd, body, alike, model, (answers, place));
+    }
+
+    /// Books what is plastic, after the rest.
+    #[inline]
+    pub fn book_plastic(&mut self) {
+        if self.points.increment.plastic {
+            book_plastic(self.simd, &self.points, &mut self.booked);
         }
-        if points.increment.plastic {
-            book_plastic(*simd, points, works, lanes);
-        }
-        keep(*simd, points, arrays, start, lanes);
     }
 
     /// The works, and the smallest share of its volume that a particle has kept.
     pub fn end(self) -> ([f64; 3], Smallest) {
-        let smallest = (self.least.into_iter().map(Smallest)).fold(Smallest::default(), Sum::plus);
-        (self.works.each_ref().map(lanes::sum), smallest)
+        let least = self.booked.least.into_iter().map(Smallest);
+        let smallest = least.fold(Smallest::default(), Sum::plus);
+        (self.booked.works.each_ref().map(lanes::sum), smallest)
     }
 }
 
@@ -114,6 +115,8 @@ impl Default for Points {
             apart: false,
             alike: false,
             middle: Lane::of(0.0),
+            growth: Lane::of(1.0),
+            left_out: Lane::of(0.0),
         }
     }
 }
@@ -125,17 +128,19 @@ impl Points {
     }
 
     /// Finds out which particles are separated.
+    #[inline]
     fn look_up<'m>(
         &mut self,
         body: &[u16],
+        alike: bool,
         model: impl Fn(u16) -> &'m Material,
         (stresses, states, _): &Arrays,
         start: usize,
     ) {
         let lanes = body.len();
         self.apart = false;
-        if alike(body) {
-            let open = |k: usize| any(&states[k][start..start + lanes]);
+        if alike {
+            let open = |k: usize| any(&states.column(k)[start..start + lanes]);
             if !model(body[0]).opening().is_some_and(open) {
                 return;
             }
@@ -144,9 +149,9 @@ impl Points {
         for (l, &body) in body.iter().enumerate() {
             let model = model(body);
             let p = start + l;
-            if model.opening().is_some_and(|k| states[k][p] > 0.0) {
-                let stress = std::array::from_fn(|k| stresses[k][p]);
-                let state = std::array::from_fn(|k| states[k][p]);
+            if model.opening().is_some_and(|k| states.at(k, p) > 0.0) {
+                let stress = std::array::from_fn(|k| stresses.at(k, p));
+                let state = std::array::from_fn(|k| states.at(k, p));
                 let separated = model.is_separated(&stress, &state);
                 self.separated[l] = f64::from(u8::from(separated));
                 self.apart |= separated;
@@ -154,11 +159,44 @@ impl Points {
         }
     }
 
+    /// Fetches particles.
+    #[inline(always)]
+    pub fn fetch(&mut self, (stresses, states, volumes): &Arrays, start: usize, held: &Held) {
+        stresses.load(&mut self.increment.before, start);
+        states.load(&mut self.increment.state, start);
+        volumes.load(std::array::from_mut(&mut self.volume), start);
+        clear_rest(&mut self.volume, held);
+    }
+
+    /// Turns a stress with its cell.
+    #[inline(always)]
+    pub fn turn(&mut self, own: &Deformation, l: usize) {
+        let turn = Mat3::from_cols_array(&get(&own.turn, l));
+        let turned = tensor::rotate(&get(&self.increment.before, l), &turn);
+        set(&mut self.increment.before, l, turned);
+    }
+
+    /// Gives particles their strains.
+    #[inline]
+    fn strain(&mut self, simd: Simd, own: &Deformation) {
+        if self.alike && !self.apart {
+            return;
+        }
+        self.increment.strain = own.strain;
+        (self.growth, self.left_out) = (own.growth, own.left_out);
+        self.alike = !self.apart;
+        if self.apart {
+            separate(simd, own, self);
+        }
+    }
+
     /// New stresses, where materials meet one material after the other.
+    #[inline]
     fn update<'m>(
         &mut self,
-        simd: lanes::Simd,
+        simd: Simd,
         body: &[u16],
+        alike: bool,
         model: impl Fn(u16) -> &'m Material,
         (answers, place): (&Answers, usize),
     ) {
@@ -167,7 +205,7 @@ impl Points {
             Material::External(_) => answers.give(all, place, lanes),
             _ => model.update_lanes(simd, all, lanes),
         };
-        if alike(body) {
+        if alike {
             return update(model(first), &mut self.increment);
         }
         let before = self.increment.clone();
@@ -188,100 +226,52 @@ impl Points {
             }
         }
     }
-}
 
-for_each_simd! {
-    /// Turns stresses and gives each particle its strain.
-    fn strain(
-        own: &Deformation,
-        points: &mut Points,
-        arrays: &Arrays,
-        start: usize,
-        lanes: usize,
-    ) {
-        let (stresses, states, volumes) = arrays;
-        load(&mut points.increment.before, &stresses.each_ref().map(|s| &**s), start);
-        load(&mut points.increment.state, &states.each_ref().map(|s| &**s), start);
-        load_one(&mut points.volume, volumes, start);
-        points.volume[lanes..whole(lanes)].fill(0.0);
-        for l in 0..whole(lanes) {
-            let turn = Mat3::from_cols_array(&get(&own.turn, l));
-            let turned = tensor::rotate(&get(&points.increment.before, l), &turn);
-            set(&mut points.increment.before, l, turned);
+    /// Changes a volume and books the work.
+    #[inline(always)]
+    pub fn book(&mut self, booked: &mut Booked, l: usize) {
+        let Booked { works, least } = booked;
+        let growth = self.growth[l];
+        least[l] = either(growth < least[l], growth, least[l]);
+        let middle = middle_stress(&self.increment, l);
+        let middle_volume = 0.5 * self.volume[l] * (1.0 + growth);
+        let left_out = tensor::trace(&middle) * (1.0 / 3.0) * self.left_out[l];
+        works[0][l] += tensor::dot(&middle, &get(&self.increment.strain, l)) * middle_volume;
+        works[1][l] += left_out * middle_volume;
+        self.middle[l] = middle_volume;
+        self.volume[l] *= growth;
+    }
+
+    /// Copies what is new to the particles.
+    #[inline]
+    pub fn keep(&self, simd: Simd, to: &mut Arrays, start: usize, lanes: usize) {
+        let (stresses, states, volumes) = to;
+        stresses.store(simd, &self.increment.stress, start, lanes);
+        if self.increment.changed {
+            states.store(simd, &self.increment.state, start, lanes);
         }
-        if points.alike && !points.apart {
-            return;
-        }
-        points.increment.strain = own.strain;
-        points.alike = !points.apart;
-        if points.apart {
-            for l in 0..whole(lanes) {
-                let own = own.volumetric[l] - own.smoothed[l];
-                let left_out = own * (1.0 / 3.0) * points.separated[l];
-                (0..3).for_each(|k| points.increment.strain[k][l] += left_out);
-            }
-        }
+        volumes.store(simd, std::array::from_ref(&self.volume), start, lanes);
     }
 }
 
 for_each_simd! {
-    /// Changes volumes and books the work.
-    fn book(
-        own: &Deformation,
-        points: &mut Points,
-        works: &mut Works,
-        least: &mut Lane,
-        lanes: usize,
-    ) {
-        for l in 0..whole(lanes) {
-            let left_out = own.volumetric[l] - own.smoothed[l];
-            book_one(l, own.growth[l], left_out, points, works, least);
+    /// Gives what is separated its own volumetric strain.
+    fn separate(own: &Deformation, points: &mut Points) {
+        for l in 0..LANES {
+            let (separated, left_out) = (points.separated[l], own.left_out[l]);
+            let given_back = left_out * (1.0 / 3.0) * separated;
+            (0..3).for_each(|k| points.increment.strain[k][l] += given_back);
+            points.left_out[l] = left_out * (1.0 - separated);
+            points.growth[l] = growth(own.volumetric[l] - points.left_out[l]);
         }
     }
-}
-
-for_each_simd! {
-    /// The same where some are separated.
-    fn book_apart(
-        own: &Deformation,
-        points: &mut Points,
-        works: &mut Works,
-        least: &mut Lane,
-        lanes: usize,
-    ) {
-        for l in 0..whole(lanes) {
-            let volumetric = own.volumetric[l];
-            let left_out = (volumetric - own.smoothed[l]) * (1.0 - points.separated[l]);
-            book_one(l, growth(volumetric - left_out), left_out, points, works, least);
-        }
-    }
-}
-
-/// `left_out` is the volumetric strain that smoothing has taken away.
-#[inline(always)]
-fn book_one(
-    l: usize,
-    growth: f64,
-    left_out: f64,
-    points: &mut Points,
-    works: &mut Works,
-    least: &mut Lane,
-) {
-    let increment = &points.increment;
-    least[l] = either(growth < least[l], growth, least[l]);
-    let middle = middle_stress(increment, l);
-    let middle_volume = 0.5 * points.volume[l] * (1.0 + growth);
-    works[0][l] += tensor::dot(&middle, &get(&increment.strain, l)) * middle_volume;
-    works[1][l] += tensor::trace(&middle) * (1.0 / 3.0) * left_out * middle_volume;
-    points.middle[l] = middle_volume;
-    points.volume[l] *= growth;
 }
 
 for_each_simd! {
     /// Books the plastic part.
-    fn book_plastic(points: &Points, works: &mut Works, lanes: usize) {
-        let increment = &points.increment;
-        for l in 0..whole(lanes) {
+    fn book_plastic(points: &Points, booked: &mut Booked) {
+        let (increment, works) = (&points.increment, &mut booked.works);
+        for l in 0..LANES {
             let plastic_strain = get(&increment.plastic_strain, l);
             let plastic = tensor::dot(&middle_stress(increment, l), &plastic_strain);
             let plastic = plastic * points.middle[l];
@@ -296,16 +286,4 @@ for_each_simd! {
 fn middle_stress(increment: &Strained, l: usize) -> Voigt {
     let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
     std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]))
-}
-
-for_each_simd! {
-    /// Copies what is new to the particles.
-    fn keep(points: &Points, arrays: &mut Arrays, start: usize, lanes: usize) {
-        let (stresses, states, volumes) = arrays;
-        store(&points.increment.stress, stresses, start, lanes);
-        if points.increment.changed {
-            store(&points.increment.state, states, start, lanes);
-        }
-        store_one(&points.volume, volumes, start, lanes);
-    }
 }

@@ -11,8 +11,8 @@ use super::state::Summed;
 use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference, strain};
 use crate::Vec3;
 use crate::lanes::{
-    self, ByTile, Contents, LANES, Lane, Simd, VoigtLanes, alike, any, for_each_simd, get, load,
-    load_one, set, whole,
+    self, ByTile, Contents, Held, LANES, Lane, Simd, VoigtLanes, alike, any, clear_rest,
+    for_each_simd, get, held, load, load_one, set,
 };
 use crate::material::STATE_SIZE;
 use crate::particles::Particles;
@@ -87,8 +87,8 @@ pub(super) struct Counted<'a> {
 
 for_each_simd! {
     /// Adds a particle to each cell.
-    fn add(sums: &mut Sums, points: &Counted, sum: &mut CellSums, lanes: usize) {
-        for l in 0..whole(lanes) {
+    fn add(sums: &mut Sums, points: &Counted, sum: &mut CellSums) {
+        for l in 0..LANES {
             let n = get(points.shapes, l);
             let (m, v) = (points.mass[l], Vec3::from_array(get(points.velocity, l)));
             let shares = n.map(|n| n * m);
@@ -113,8 +113,8 @@ for_each_simd! {
 
 for_each_simd! {
     /// Adds what of it has not opened and what is not separated.
-    fn add_closed(sums: &Sums, points: &Counted, sum: &mut CellSums, lanes: usize) {
-        for l in 0..whole(lanes) {
+    fn add_closed(sums: &Sums, points: &Counted, sum: &mut CellSums) {
+        for l in 0..LANES {
             sum.solid[l] += points.volume[l] * sums.shares[0][l];
             sum.closed[l] += points.volume[l] * sums.shares[1][l];
         }
@@ -124,7 +124,7 @@ for_each_simd! {
 for_each_simd! {
     /// Adds what it is made of.
     fn add_medium(sums: &Sums, points: &Counted, medium: &mut CellMedium, lanes: usize) {
-        for l in 0..whole(lanes) {
+        for l in 0..LANES {
             let volume = points.volume[l];
             for k in 0..2 {
                 medium.moduli[k][l] += volume * sums.elasticity[k][l];
@@ -175,16 +175,23 @@ impl Sums {
 
     /// Adds the particles of a slot.
     #[inline]
-    pub fn add(&mut self, asked: &Asked, points: &Counted, bodies: &[u16], records: &mut Records) {
-        self.look_up(asked, points, bodies);
+    pub fn add(
+        &mut self,
+        asked: &Asked,
+        points: &Counted,
+        bodies: &[u16],
+        alike: bool,
+        records: &mut Records,
+    ) {
+        self.look_up(asked, points, bodies, alike);
         let sum = &mut *records.sum;
         if !self.closed && !self.opened {
             self.opened = true;
             (sum.solid, sum.closed) = (sum.volume, sum.volume);
         }
-        add(asked.simd, self, points, sum, bodies.len());
+        add(asked.simd, self, points, sum);
         if self.opened {
-            add_closed(asked.simd, self, points, sum, bodies.len());
+            add_closed(asked.simd, self, points, sum);
         }
         let Some(medium) = &mut records.medium else {
             return;
@@ -233,11 +240,10 @@ impl Sums {
 
     /// What materials say of the particles of a slot.
     #[inline]
-    fn look_up(&mut self, asked: &Asked, points: &Counted, bodies: &[u16]) {
+    fn look_up(&mut self, asked: &Asked, points: &Counted, bodies: &[u16], alike: bool) {
         let (plan, elasticity) = (asked.plan, asked.elasticity);
         let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
         let (first, lanes) = (bodies[0], bodies.len());
-        let alike = alike(bodies);
         if alike {
             if self.of != Some(first) {
                 self.of = Some(first);
@@ -297,17 +303,16 @@ impl Default for Side {
 }
 
 for_each_simd! {
-    fn fetch(side: &mut Side, particles: &Particles, start: usize, shapes: &Shapes, lanes: usize) {
+    fn fetch(side: &mut Side, particles: &Particles, start: usize, shapes: &Shapes, held: &Held) {
         load(&mut side.position, &particles.position.components(), start);
         load(&mut side.velocity, &particles.velocity.components(), start);
         load(&mut side.stress, &particles.stress.components(), start);
         load(&mut side.state, &particles.state.components(), start);
         load_one(&mut side.mass, &particles.mass, start);
         load_one(&mut side.volume, &particles.volume, start);
-        for l in lanes..whole(lanes) {
-            (side.mass[l], side.volume[l]) = (0.0, 0.0);
-        }
-        for l in 0..whole(lanes) {
+        clear_rest(&mut side.mass, held);
+        clear_rest(&mut side.volume, held);
+        for l in 0..LANES {
             let n = shapes.at(l, Vec3::from_array(get(&side.position, l)));
             set(&mut side.shapes, l, n);
         }
@@ -405,7 +410,7 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
                     particles,
                     slot.start,
                     &shapes,
-                    slot.len(),
+                    held(slot.len()),
                 );
                 let points = Counted {
                     shapes: &side.shapes,
@@ -416,7 +421,8 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
                     stress: &side.stress,
                     state: &side.state,
                 };
-                sums.add(&asked, &points, &particles.body[slot], &mut records);
+                let bodies = &particles.body[slot];
+                sums.add(&asked, &points, bodies, alike(bodies), &mut records);
             }
             sums.leave(asked.simd, tile, &mut records, nodes, pairs, &mut giving);
             if drifted {

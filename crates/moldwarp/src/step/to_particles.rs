@@ -13,8 +13,8 @@ use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
 use super::shapes::Shapes;
 use super::{BLOCK, Node, Shared, strain};
 use crate::lanes::{
-    AHEAD, ByTile, LANES, Lane, Simd, for_each_simd, get, load, load_one, prefetch, set, store,
-    sum as sum_lanes, whole,
+    AHEAD, ByTile, Columns, LANES, Lane, Simd, for_each_simd, get, load, prefetch, set,
+    sum as sum_lanes,
 };
 use crate::parallel::{self, fold};
 use crate::simulation::Simulation;
@@ -72,12 +72,6 @@ pub(super) struct Given<'a> {
     pub grid: &'a [Quad],
 }
 
-/// Particles side by side before they move.
-pub(super) struct Before<'a> {
-    pub position: &'a [Lane; 3],
-    pub mass: &'a Lane,
-}
-
 impl Kick {
     /// Goes to the next cells.
     #[inline]
@@ -100,21 +94,20 @@ impl Kick {
         }
     }
 
-    /// Gives particles of these velocities what they have not received yet.
-    #[inline]
-    pub fn give(
-        &mut self,
-        simd: Simd,
-        given: &Given,
-        points: &Before,
-        velocity: &mut [Lane; 3],
-        shapes: &Shapes,
-        lanes: usize,
-    ) {
-        if let Some(pending) = given.pending {
-            accelerate(simd, self, points, shapes, velocity, pending, lanes);
+    /// The velocity of a particle here, `arm` from node 0, with what it has not received yet.
+    #[inline(always)]
+    pub fn receive(&self, l: usize, arm: Vec3, mut v: Vec3, pending: Pending) -> Vec3 {
+        v += self.received.at(l, arm) * pending.h;
+        if pending.blend > 0.0 {
+            v += (self.grid.at(l, arm) - v) * pending.blend;
         }
-        count(simd, &mut self.kinetic, points.mass, velocity, lanes);
+        v
+    }
+
+    /// Counts the energy of a particle.
+    #[inline(always)]
+    pub fn count(&mut self, l: usize, mass: f64, v: Vec3) {
+        self.kinetic[l] += 0.5 * mass * v.length_squared();
     }
 
     /// Energy of motion of all particles, J.
@@ -143,31 +136,18 @@ impl Linear {
 }
 
 for_each_simd! {
+    /// Gives particles of these velocities what they have not received yet.
     fn accelerate(
-        kick: &mut Kick,
-        points: &Before,
-        shapes: &Shapes,
         velocity: &mut [Lane; 3],
+        kick: &Kick,
+        shapes: &Shapes,
+        position: &[Lane; 3],
         pending: Pending,
-        lanes: usize,
     ) {
-        for l in 0..whole(lanes) {
-            let arm = shapes.arm(l, Vec3::from_array(get(points.position, l)));
-            let mut v = Vec3::from_array(get(velocity, l));
-            v += kick.received.at(l, arm) * pending.h;
-            if pending.blend > 0.0 {
-                v += (kick.grid.at(l, arm) - v) * pending.blend;
-            }
-            set(velocity, l, v.to_array());
-        }
-    }
-}
-
-for_each_simd! {
-    fn count(kinetic: &mut Lane, mass: &Lane, velocity: &[Lane; 3], lanes: usize) {
-        for l in 0..whole(lanes) {
+        for l in 0..LANES {
+            let arm = shapes.arm(l, Vec3::from_array(get(position, l)));
             let v = Vec3::from_array(get(velocity, l));
-            kinetic[l] += 0.5 * mass[l] * v.length_squared();
+            set(velocity, l, kick.receive(l, arm, v, pending).to_array());
         }
     }
 }
@@ -265,41 +245,39 @@ fn kinetic(sim: &Simulation) -> f64 {
 impl Simulation {
     /// Gives particles what they have not received yet of the last kick, so that their velocities can be seen.
     pub fn settle(&mut self) {
-        if self.pending.is_some() {
+        if let Some(pending) = self.pending.take() {
             parallel::inside(|| {
                 self.guests_arrive();
-                settle(self);
+                settle(self, pending);
             });
         }
         self.guests_leave();
     }
 }
 
-fn settle(sim: &mut Simulation) {
+fn settle(sim: &mut Simulation, pending: Pending) {
     let Simulation {
         particles,
         active,
         shared,
-        pending,
         simd,
         ..
     } = sim;
     let given = Given {
-        pending: pending.take(),
+        pending: Some(pending),
         received: &shared.received,
         grid: &shared.grid,
     };
     let (active, places, simd) = (&*active, &shared.places[..], *simd);
-    let (position, mass) = (particles.position.components(), &particles.mass[..]);
-    type Velocities<'a> = [&'a mut [f64]; 3];
-    let velocities = particles.velocity.components_mut();
+    let position = particles.position.components();
+    let velocities = Columns::new(particles.velocity.components_mut());
     let all = ByTile::new(&active.tiles, velocities, ());
-    fold(all, super::TILES, &|block: ByTile<Velocities, ()>| {
+    fold(all, super::TILES, &|block: ByTile<Columns<3>, ()>| {
         let first = block.first();
         let tiles = block.each();
         let mut own = block.particles;
         let (mut shapes, mut corners) = (Shapes::default(), NO_CORNERS);
-        let (mut kick, mut mass_lane) = (Kick::default(), Lane::of(0.0));
+        let mut kick = Kick::default();
         let (mut x, mut v) = ([Lane::of(0.0); 3], [Lane::of(0.0); 3]);
         for (number, tile) in tiles {
             let nodes = active.tile_nodes(number);
@@ -309,14 +287,9 @@ fn settle(sim: &mut Simulation) {
                 let (start, lanes) = (slot.start - first, slot.len());
                 prefetch(&position, slot.end + AHEAD);
                 load(&mut x, &position, slot.start);
-                load(&mut v, &own.each_ref().map(|v| &**v), start);
-                load_one(&mut mass_lane, mass, slot.start);
-                let points = Before {
-                    position: &x,
-                    mass: &mass_lane,
-                };
-                kick.give(simd, &given, &points, &mut v, &shapes, lanes);
-                store(&v, &mut own, start, lanes);
+                own.load(&mut v, start);
+                accelerate(simd, &mut v, &kick, &shapes, &x, pending);
+                own.store(simd, &v, start, lanes);
             }
         }
     });

@@ -3,62 +3,31 @@
 use super::super::{State, Strained};
 use super::{MohrCoulomb, MohrCoulombState, YieldState, compose, equivalent_strain};
 use crate::lanes::{
-    LANES, Lane, Simd, VoigtLanes, any, either, for_each_simd, get, larger, set, whole,
+    Held, LANES, Lane, Simd, any, clear_rest, either, for_each_simd, get, held, larger, set,
 };
 use crate::tensor::{self, Voigt};
 
-/// Stresses to return, and what has become of them.
-struct Returned {
-    stress: VoigtLanes,
-    /// Number of a [`YieldState`].
-    yielding: Lane,
-    opening: Lane,
-    /// 1 where the stress has to be returned on its own.
-    odd: Lane,
-}
-
-impl Default for Returned {
-    fn default() -> Returned {
-        Returned {
-            stress: [Lane::of(0.0); 6],
-            yielding: Lane::of(0.0),
-            opening: Lane::of(0.0),
-            odd: Lane::of(1.0),
-        }
-    }
-}
-
 impl MohrCoulomb {
     pub(in super::super) fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
-        let mut sure: Lane = Lane::of(0.0);
-        predict(simd, self, s, lanes, &mut sure);
+        let (mut unsure, mut calm): (Lane, bool) = (Lane::of(0.0), true);
+        predict(simd, self, s, held(lanes), &mut unsure, &mut calm);
         s.plastic = false;
-        s.changed = any(&s.state[3][..lanes]);
-        if s.changed {
-            s.state[3][..lanes].fill(0.0);
-        }
-        // Without leaving early, that it be done side by side.
-        let calm = |l: usize| (s.state[2][l] <= 0.0) & (sure[l] > 0.0);
-        if (0..lanes).fold(true, |all, l| all & calm(l)) {
+        if calm {
             return;
         }
         s.changed = true;
         if any(&s.state[2][..lanes]) {
             for l in 0..lanes {
                 if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
-                    (s.plastic, sure[l]) = (true, 1.0);
+                    (s.plastic, unsure[l]) = (true, 0.0);
                 }
             }
         }
-        let count = (sure[..lanes].iter()).fold(0, |n, &sure| n + usize::from(sure == 0.0));
-        // Where most yield they are returned where they are; where few do, these are brought together.
-        if 3 * count > lanes && !self.corners.has_cutoff() {
-            s.plastic |= self.return_in_place(simd, s, &mut sure, lanes);
-        } else if count > 0 {
-            s.plastic |= self.return_few(simd, s, &sure[..lanes]);
+        if any(&*unsure) {
+            s.plastic |= self.return_all(simd, s, &mut unsure);
         }
         if s.plastic {
-            flow(simd, self, s, lanes);
+            flow(simd, self, s);
         }
     }
 
@@ -77,59 +46,24 @@ impl MohrCoulomb {
     }
 
     /// Returns the predictors that are not sure; says whether any of them yields.
-    fn return_in_place(&self, simd: Simd, s: &mut Strained, sure: &mut Lane, lanes: usize) -> bool {
-        sure[lanes..whole(lanes)].fill(1.0);
-        // In the place of what is sure comes what has to be returned on its own.
-        let odd = sure;
-        return_unsure(simd, self, s, odd, lanes);
-        if any(&odd[..lanes]) {
-            for l in (0..lanes).filter(|&l| odd[l] > 0.0) {
+    fn return_all(&self, simd: Simd, s: &mut Strained, unsure: &mut Lane) -> bool {
+        // In the place of what is unsure comes what has to be returned on its own.
+        let alone = unsure;
+        if !self.corners.has_cutoff() {
+            return_unsure(simd, self, s, alone);
+        }
+        if any(&**alone) {
+            for l in (0..LANES).filter(|&l| alone[l] > 0.0) {
                 let step = self.return_map(&get(&s.stress, l));
                 let yielding = f64::from(step.yielding as u8);
                 if yielding > 0.0 {
-                    self.keep(s, l, step.stress, step.opening, yielding);
+                    set(&mut s.stress, l, step.stress);
+                    s.state[2][l] = (s.state[2][l] + step.opening).max(0.0);
+                    s.state[3][l] = yielding;
                 }
             }
         }
-        any(&s.state[3][..lanes])
-    }
-
-    fn keep(&self, s: &mut Strained, l: usize, stress: Voigt, opening: f64, yielding: f64) {
-        set(&mut s.stress, l, stress);
-        s.state[2][l] = (s.state[2][l] + opening).max(0.0);
-        s.state[3][l] = yielding;
-    }
-
-    /// The same one after another or, without a cut-off, brought together.
-    fn return_few(&self, simd: Simd, s: &mut Strained, sure: &[f64]) -> bool {
-        let (mut all, mut count) = ([0u8; LANES], 0);
-        for (l, _) in sure.iter().enumerate().filter(|l| *l.1 == 0.0) {
-            all[count] = l as u8;
-            count += 1;
-        }
-        let unsure = &all[..count];
-        let mut r = Returned::default();
-        for (i, &l) in unsure.iter().enumerate() {
-            set(&mut r.stress, i, get(&s.stress, l.into()));
-        }
-        if !self.corners.has_cutoff() {
-            return_side_by_side(simd, self, &mut r, unsure.len());
-        }
-        let mut any = false;
-        for (i, &l) in unsure.iter().enumerate() {
-            let l = usize::from(l);
-            if r.odd[i] != 0.0 {
-                let step = self.return_map(&get(&s.stress, l));
-                set(&mut r.stress, i, step.stress);
-                r.yielding[i] = f64::from(step.yielding as u8);
-                r.opening[i] = step.opening;
-            }
-            if r.yielding[i] > 0.0 {
-                any = true;
-                self.keep(s, l, get(&r.stress, i), r.opening[i], r.yielding[i]);
-            }
-        }
-        any
+        any(&*s.state[3])
     }
 }
 
@@ -143,13 +77,27 @@ fn state_of(state: State) -> MohrCoulombState {
 }
 
 for_each_simd! {
-    /// Elastic predictors, and where they are surely admissible.
-    fn predict(model: &MohrCoulomb, s: &mut Strained, lanes: usize, sure: &mut Lane) {
-        for l in 0..whole(lanes) {
+    /// Elastic predictors, which of them may not be admissible, and whether all are and no particle is open.
+    fn predict(
+        model: &MohrCoulomb,
+        s: &mut Strained,
+        held: &Held,
+        unsure: &mut Lane,
+        calm: &mut bool,
+    ) {
+        let (mut restless, mut yielded) = (Lane::of(0.0), s.state[3]);
+        clear_rest(&mut yielded, held);
+        for l in 0..LANES {
             let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
-            sure[l] = either(model.surely_elastic(&trial), 1.0, 0.0);
             set(&mut s.stress, l, trial);
+            unsure[l] = either(model.surely_elastic(&trial), 0.0, 1.0);
+            restless[l] = either(s.state[2][l] > 0.0, 1.0, unsure[l]);
+            s.state[3][l] = 0.0;
         }
+        clear_rest(unsure, held);
+        clear_rest(&mut restless, held);
+        *calm = !any(&*restless);
+        s.changed = any(&*yielded);
     }
 }
 
@@ -180,25 +128,14 @@ impl One {
 }
 
 for_each_simd! {
-    fn return_side_by_side(model: &MohrCoulomb, r: &mut Returned, lanes: usize) {
-        for l in 0..whole(lanes) {
-            let one = One::of(model, &get(&r.stress, l));
-            set(&mut r.stress, l, one.stress);
-            (r.yielding[l], r.opening[l]) = (one.yielding, one.opening);
-            r.odd[l] = either(one.odd, 1.0, 0.0);
-        }
-    }
-}
-
-for_each_simd! {
-    /// Returns where predictors are not `sure`, and puts 1 there where one has to be returned on its own, else 0.
-    fn return_unsure(model: &MohrCoulomb, s: &mut Strained, sure: &mut Lane, lanes: usize) {
-        for l in 0..whole(lanes) {
+    /// Returns predictors that are `unsure`, and leaves 1 there where one has to be returned on its own, else 0.
+    fn return_unsure(model: &MohrCoulomb, s: &mut Strained, unsure: &mut Lane) {
+        for l in 0..LANES {
             let trial = get(&s.stress, l);
             let one = One::of(model, &trial);
-            let unsure = sure[l] == 0.0;
-            sure[l] = either(unsure & one.odd, 1.0, 0.0);
-            let returned = unsure & !one.odd & (one.yielding > 0.0);
+            let returned = unsure[l] > 0.0;
+            unsure[l] = either(returned & one.odd, 1.0, 0.0);
+            let returned = returned & !one.odd & (one.yielding > 0.0);
             let opened = larger(s.state[2][l] + one.opening, 0.0);
             s.state[2][l] = either(returned, opened, s.state[2][l]);
             s.state[3][l] = either(returned, one.yielding, s.state[3][l]);
@@ -211,8 +148,8 @@ for_each_simd! {
 
 for_each_simd! {
     /// Plastic strain: the part of the increment that gave no stress, C⁻¹(σ_trial − σ).
-    fn flow(model: &MohrCoulomb, s: &mut Strained, lanes: usize) {
-        for l in 0..whole(lanes) {
+    fn flow(model: &MohrCoulomb, s: &mut Strained) {
+        for l in 0..LANES {
             let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
             let stress = get(&s.stress, l);
             let excess: Voigt = std::array::from_fn(|k| trial[k] - stress[k]);

@@ -8,8 +8,8 @@
 use super::super::corners::NO_CORNERS;
 use super::super::shapes::Shapes;
 use super::super::strain::Deformation;
-use super::{Arrays, Points, strain};
-use crate::lanes::{ByTile, load, store};
+use super::{Arrays, Points};
+use crate::lanes::{ByTile, Columns, Held, LANES, alike, for_each_simd, held, load};
 use crate::material::{External, Increments, Material, Strained};
 use crate::parallel::fold;
 use crate::particles::{Particles, States, Tensors};
@@ -239,14 +239,14 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
     let model = |body: u16| &materials[bodies[usize::from(body)].material].model;
     let smoothing = plan.numerics.smoothing;
     let arrays: Arrays = (
-        particles.stress.components_mut(),
-        particles.state.components_mut(),
-        &mut particles.volume[..],
+        Columns::new(particles.stress.components_mut()),
+        Columns::new(particles.state.components_mut()),
+        Columns::new([&mut particles.volume]),
     );
-    type Out<'a> = ([&'a mut [f64]; 6], [&'a mut [f64]; 6], [&'a mut [f64]; 6]);
+    type Out<'a> = (Columns<'a, 6>, Columns<'a, 6>, [&'a mut [f64]; 6]);
     let out: Out = (
-        to.before.components_mut(),
-        to.strain.components_mut(),
+        Columns::new(to.before.components_mut()),
+        Columns::new(to.strain.components_mut()),
         to.stress.components_mut(),
     );
     let all = ByTile::new(&active.tiles, (arrays, out), ());
@@ -272,11 +272,20 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
                 {
                     continue;
                 }
-                points.look_up(body, model, &arrays, start);
-                strain(simd, &own, &mut points, &arrays, start, lanes);
-                store(&points.increment.before, &mut before, start, lanes);
-                store(&points.increment.strain, &mut increment, start, lanes);
+                points.look_up(body, alike(body), model, &arrays, start);
+                fetch(simd, &mut points, &arrays, &own, start, held(lanes));
+                points.strain(simd, &own);
+                before.store(simd, &points.increment.before, start, lanes);
+                increment.store(simd, &points.increment.strain, start, lanes);
             }
         }
     });
+}
+
+for_each_simd! {
+    /// Fetches particles and turns their stresses.
+    fn fetch(points: &mut Points, arrays: &Arrays, own: &Deformation, start: usize, held: &Held) {
+        points.fetch(arrays, start, held);
+        (0..LANES).for_each(|l| points.turn(own, l));
+    }
 }

@@ -253,8 +253,7 @@ impl Simulation {
     /// Places of the particles in an element.
     pub(crate) fn particles_in(&self, e: u32) -> impl Iterator<Item = usize> {
         let filed = self.order.inside(e as usize).iter().map(|&p| p as usize);
-        let is_guest = move |p: usize| self.guests.inside(e).any(|guest| guest == p);
-        let stayed = filed.filter(move |&p| self.particles.element[p] == e && !is_guest(p));
+        let stayed = filed.filter(move |&p| self.particles.element[p] == e);
         stayed.chain(self.guests.inside(e))
     }
 

@@ -295,8 +295,8 @@ impl Simulation {
         self.shared.place(&self.active, &self.plan.mesh);
         self.cells.renew(&self.active);
         if self.may_have_guests() {
-            let tiles = Guests::most_tiles(self.particles.len());
-            self.guests.make_room(&mut self.particles);
+            let tiles = Guests::most_tiles(self.particles.len(), self.active.own_tiles());
+            self.guests.make_room(&mut self.particles, &mut self.order);
             self.active.make_room(tiles);
             self.cells.make_room(tiles, self.nodes.len());
         }

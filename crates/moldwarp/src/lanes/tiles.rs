@@ -92,19 +92,15 @@ impl Tiles {
         self.append(0, cells, lane, put);
     }
 
-    /// Puts others in the place of all tiles but the first ones.
-    pub(crate) fn replace(
+    /// Lays out more cells behind the others.
+    pub(crate) fn extend(
         &mut self,
-        keep: usize,
         cells: impl Iterator<Item = (u32, u32)>,
         lane: impl FnMut(Option<Pile>),
         put: impl FnMut(u32, u32),
     ) {
-        let end = self.tiles[keep];
-        let place = self.slots[end.first_slot as usize];
-        self.tiles.truncate(keep);
-        self.slots.truncate(end.first_slot as usize);
-        self.helpers.truncate(end.first_helper as usize);
+        self.tiles.pop();
+        let place = self.slots.pop().expect("where the last slot ends");
         self.append(place, cells, lane, put);
     }
 

@@ -10,7 +10,7 @@ use crate::particles::{Order, Particles};
 use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::stages::moduli;
-use crate::step::{Active, Answers, Cells, Guests, Node, Shared};
+use crate::step::{Active, Answers, Cells, Guests, Known, Node, Shared, homes};
 
 /// Time in s and number of steps of a state that [`Simulation::save`] has handed out.
 ///
@@ -80,10 +80,9 @@ impl Simulation {
         } = self;
         assert!(pending.is_none(), "particles are settled");
         let materials: Vec<usize> = plan.bodies.iter().map(|b| b.material).collect();
-        let (homes, filed): (Vec<u32>, Vec<u32>) = guests.filed(&order.filed).unzip();
         section("clock", Section::new(clock))?;
         section("particles", Section::new(particles))?;
-        section("guests", Section::new(&[homes, filed]))?;
+        section("guests", Section::new(&guests.known(order)))?;
         section("mesh nodes", Section::new(&plan.mesh.nodes))?;
         section("materials", Section::new(&materials))?;
         section("reserve", Section::new(reserve))?;
@@ -196,30 +195,26 @@ impl Simulation {
         check("loads", self.loads.iter().all(there))
     }
 
-    /// Numbers cells and nodes as they were: particles are in order already.
-    fn number(&mut self, [homes, filed]: [Vec<u32>; 2]) -> Result<(), Broken> {
-        let elements = self.plan.mesh.tets.len();
-        let known = |&p: &u32| (p as usize) < self.particles.len();
-        check(
-            "guests",
-            homes.len() == filed.len() && homes.iter().all(known),
-        )?;
+    /// Numbers cells and nodes as they were: particles are in order already, but for guests.
+    fn number(&mut self, guests: Known) -> Result<(), Broken> {
+        let (elements, count) = (self.plan.mesh.tets.len(), self.particles.len());
+        let [from, _, _, filed] = &guests;
+        let homes: Vec<usize> = homes(from, count).collect();
+        check("guests", homes.len() == filed.len())?;
         check("guests", filed.iter().all(|&e| (e as usize) < elements))?;
         // Those that are guests lie under other elements than their own.
         let own = &mut self.particles.element;
         let replaced = homes.iter().zip(filed);
         let own: Vec<u32> = replaced
-            .map(|(&p, e)| std::mem::replace(&mut own[p as usize], e))
+            .map(|(&p, &e)| std::mem::replace(&mut own[p], e))
             .collect();
         self.reorder();
         let mut places = self.order.destination.iter().zip(0..);
         check("particles", places.all(|(a, b)| *a == b))?;
         for (&p, e) in homes.iter().zip(own) {
-            self.particles.element[p as usize] = e;
+            self.particles.element[p] = e;
         }
-        let none = homes.is_empty();
-        self.guests.expect(homes);
-        check("guests", none || self.regroup())
+        check("guests", self.expect(&guests))
     }
 
     /// Takes over what the last kick has left at nodes and in cells.

@@ -230,7 +230,7 @@ impl Active {
         self.ranks.reserve(lanes);
     }
 
-    /// Lays out guests behind the others: cells that they are in and how many each has. `put` is told the
+    /// Lays out more guests behind all others: cells that they are in and how many each has. `put` is told the
     /// place of each.
     pub fn invite(&mut self, guests: &[(u32, u32)], put: impl FnMut(u32, u32)) {
         let Active {
@@ -240,15 +240,8 @@ impl Active {
             is_cell,
             fields,
             ranks,
-            own_tiles,
             ..
         } = self;
-        let lanes = *own_tiles * LANES;
-        elements.truncate(lanes);
-        cell_nodes.truncate(lanes);
-        is_cell.truncate(lanes);
-        fields.truncate(lanes);
-        ranks.truncate(lanes);
         let lane = |pile: Option<Pile>| {
             let cell = pile.map(|pile| guests[pile.cell as usize].0 as usize);
             elements.push(cell.map_or(NONE, |c| elements[c]));
@@ -263,7 +256,7 @@ impl Active {
             first += count;
             (first - count, count)
         });
-        tiles.replace(*own_tiles, cells, lane, put);
+        tiles.extend(cells, lane, put);
     }
 
     /// Number of tiles without those of guests.
@@ -276,21 +269,16 @@ impl Active {
         self.own_tiles * LANES..self.elements.len()
     }
 
-    /// For each lane of guests one that has the same nodes and is not of guests.
-    pub(super) fn guest_pairs(&self) -> impl Iterator<Item = usize> {
+    /// For each lane of guests from a tile of theirs on one that has the same nodes and is not of guests.
+    pub(super) fn guest_pairs(&self, tile: usize) -> impl Iterator<Item = usize> {
         let mut last = 0;
-        self.guest_lanes().map(move |lane| {
+        (tile * LANES..self.elements.len()).map(move |lane| {
             let element = self.elements[lane];
             if element != NONE {
                 last = self.cell(element as usize, 0).expect("guests are in cells");
             }
             last
         })
-    }
-
-    /// Of these tiles those that are not of guests.
-    pub(super) fn without_guests(&self, tiles: Range<usize>) -> Range<usize> {
-        tiles.start..tiles.end.min(self.own_tiles).max(tiles.start)
     }
 
     fn number_nodes(&mut self, grid: &Grid, nodes: usize) {

@@ -17,7 +17,9 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     let stays = !(sim.driven.moves() || sim.follower.moves());
     let (crushed, mut crossing) = points::run(sim, stays);
     crossing.outside = crossing.outside.map(|p| sim.guests.home(p, &sim.particles));
-    sim.guests_leave();
+    if crushed || !stays || !crossing.is_plain() {
+        sim.guests_leave();
+    }
     sim.profile.lap(Part::Points);
     if crushed {
         return Err(sim.crushed());
@@ -32,6 +34,7 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     let gone = crossing.gone.get().is_some();
     let crossed = check(sim, crossing)?;
     if gone || crossed && !(sim.may_have_guests() && sim.regroup()) {
+        sim.guests_leave();
         sim.reorder();
     }
     sim.profile.lap(Part::Order);

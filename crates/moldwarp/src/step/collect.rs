@@ -6,8 +6,8 @@
 //! the same place, and sums have the same bits with any number of threads. (A node that looks its cells up
 //! waits for memory: four to eight times as long.)
 //!
-//! Guests (`guests.rs`) have portions of their own, so that what nodes have been given by all others stays as it is
-//! when guests change.
+//! Guests (`guests.rs`) are a portion of all nodes, which is there if they are. More of them only add to what their nodes
+//! have been given.
 
 use super::corners::{Corners, Quad, add_alike, add_corners};
 use super::mass::ConsistentMass;
@@ -37,13 +37,15 @@ pub struct Portions {
 #[derive(Clone, Debug, Default)]
 pub struct Collected<T> {
     windows: Vec<Window>,
+    /// Windows without that of guests.
+    own: usize,
     given: Vec<T>,
 }
 
 /// How tiles are cut into portions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cut {
-    /// Tiles of a portion; the last one, and the last one of guests, may have fewer.
+    /// Tiles of a portion, but for guests; the last one may have fewer.
     tiles: usize,
     /// Tiles without those of guests.
     own: usize,
@@ -56,19 +58,14 @@ impl Cut {
             return parallel::fold(items, self.tiles, work);
         }
         let (own, guests) = items.split(self.own);
-        let (own, guests) = rayon::join(
-            || parallel::fold(own, self.tiles, work),
-            || parallel::fold(guests, self.tiles, work),
-        );
+        // Theirs may be the largest one.
+        let (guests, own) = rayon::join(|| work(guests), || parallel::fold(own, self.tiles, work));
         own.plus(guests)
     }
 
-    /// The same for the portions of guests only.
-    pub fn fold_guests<S: Split, T: Sum>(self, items: S, work: &(impl Fn(S) -> T + Sync)) -> T {
-        match items.count() > self.own {
-            true => parallel::fold(items.split(self.own).1, self.tiles, work),
-            false => T::default(),
-        }
+    /// The same without guests.
+    pub fn fold_own<S: Split, T: Sum>(self, items: S, work: &(impl Fn(S) -> T + Sync)) -> T {
+        parallel::fold(items.split(self.own).0, self.tiles, work)
     }
 }
 
@@ -88,30 +85,15 @@ impl Window {
 }
 
 impl Portions {
-    /// Of cells with these nodes, tile after tile, of which the first tiles are `own`.
-    pub fn renew(&mut self, cell_nodes: &[[u32; 4]], own: usize, mass: &ConsistentMass) {
+    /// Of cells with these nodes, tile after tile; guests are not there.
+    pub fn renew(&mut self, cell_nodes: &[[u32; 4]], mass: &ConsistentMass) {
+        let own = cell_nodes.len() / LANES;
         let tiles = own.div_ceil(PORTIONS).max(LEAST);
         self.cut = Cut { tiles, own };
-        self.nodes.windows.clear();
-        self.pairs.windows.clear();
-        let (own, guests) = cell_nodes.split_at(own * LANES);
-        self.add(own, mass);
-        self.add(guests, mass);
-        self.count = cell_nodes.len() / LANES;
-    }
-
-    /// The same after guests have changed. What others have given stays.
-    pub fn renew_guests(&mut self, cell_nodes: &[[u32; 4]], mass: &ConsistentMass) {
-        let own = self.cut.own;
-        let portions = own.div_ceil(self.cut.tiles);
-        self.nodes.windows.truncate(portions);
-        self.pairs.windows.truncate(portions);
-        self.add(&cell_nodes[own * LANES..], mass);
-        self.count = cell_nodes.len() / LANES;
-    }
-
-    fn add(&mut self, cell_nodes: &[[u32; 4]], mass: &ConsistentMass) {
-        for cells in cell_nodes.chunks(self.cut.tiles * LANES) {
+        self.count = own;
+        self.nodes.clear();
+        self.pairs.clear();
+        for cells in cell_nodes.chunks(tiles * LANES) {
             let (mut first, mut last) = (u32::MAX, 0);
             for &n in cells.as_flattened() {
                 first = first.min(n);
@@ -121,6 +103,17 @@ impl Portions {
             self.pairs.add(mass.pairs_of(nodes.clone()), 1);
             self.nodes.add(nodes, MOST);
         }
+        self.nodes.own = self.nodes.windows.len();
+        self.pairs.own = self.pairs.windows.len();
+    }
+
+    /// There are guests, or more of them, and so many tiles. What has been given stays.
+    pub fn add_guests(&mut self, tiles: usize, mass: &ConsistentMass) {
+        if self.count == self.cut.own {
+            self.nodes.add(0..mass.diagonal.len(), MOST);
+            self.pairs.add(0..mass.values.len(), 1);
+        }
+        self.count = tiles;
     }
 
     /// How tiles are cut.
@@ -128,16 +121,16 @@ impl Portions {
         self.cut
     }
 
-    /// Room for two more portions of so many nodes and pairs.
+    /// Room for the portion of guests, of so many nodes and pairs.
     pub fn make_room(&mut self, nodes: usize, pairs: usize) {
-        self.nodes.make_room(2 * nodes * MOST);
-        self.pairs.make_room(2 * pairs);
+        self.nodes.make_room(nodes * MOST);
+        self.pairs.make_room(pairs);
     }
 
     /// To be split at portions, with other things kept by tile: what nodes are given N quads of.
     pub fn shares<const N: usize>(&mut self) -> Shares<'_, Quad, N> {
         const { assert!(N <= MOST) }
-        self.nodes.shares(self.cut.tiles, self.count)
+        self.nodes.shares(self.cut, self.count)
     }
 
     /// The same with a number for each pair of nodes.
@@ -149,14 +142,15 @@ impl Portions {
             nodes,
             pairs,
         } = self;
-        (
-            nodes.shares(cut.tiles, *count),
-            pairs.shares(cut.tiles, *count),
-        )
+        (nodes.shares(*cut, *count), pairs.shares(*cut, *count))
     }
 }
 
 impl<T: Copy + Default> Collected<T> {
+    fn clear(&mut self) {
+        self.windows.clear();
+    }
+
     fn add(&mut self, items: Range<usize>, most: usize) {
         let before = self.windows.last().map_or(0, |w| w.before + w.count);
         let (first, count) = (items.start, items.len());
@@ -169,13 +163,13 @@ impl<T: Copy + Default> Collected<T> {
     }
 
     fn make_room(&mut self, items: usize) {
-        self.windows.reserve(2);
+        self.windows.reserve(1);
         self.given.reserve(items);
     }
 
-    fn shares<const N: usize>(&mut self, tiles: usize, count: usize) -> Shares<'_, T, N> {
+    fn shares<const N: usize>(&mut self, cut: Cut, count: usize) -> Shares<'_, T, N> {
         Shares {
-            tiles,
+            cut,
             count,
             windows: &self.windows,
             given: &mut self.given,
@@ -188,20 +182,39 @@ impl<T: Copy + Default> Collected<T> {
     where
         T: AddAssign,
     {
-        let count = items.len();
-        (sums.iter_mut()).for_each(|sums| sums[..count].fill(T::default()));
-        for window in &self.windows {
-            let own = window.items();
-            let both = own.start.max(items.start)..own.end.min(items.end);
-            if both.is_empty() {
-                continue;
-            }
-            for (k, sums) in sums.iter_mut().enumerate() {
-                let at = N * window.before + k * window.count + both.start - own.start;
-                let given = &self.given[at..at + both.len()];
-                for (sum, given) in sums[both.start - items.start..].iter_mut().zip(given) {
-                    *sum += *given;
-                }
+        sum_windows(&self.windows, &self.given, items, sums);
+    }
+
+    /// The same of what all but guests have given.
+    #[inline]
+    pub fn own_sums<const N: usize>(&self, items: Range<usize>, sums: &mut [&mut [T]; N])
+    where
+        T: AddAssign,
+    {
+        sum_windows(&self.windows[..self.own], &self.given, items, sums);
+    }
+}
+
+#[inline]
+fn sum_windows<T: Copy + Default + AddAssign, const N: usize>(
+    windows: &[Window],
+    given: &[T],
+    items: Range<usize>,
+    sums: &mut [&mut [T]; N],
+) {
+    let count = items.len();
+    (sums.iter_mut()).for_each(|sums| sums[..count].fill(T::default()));
+    for window in windows {
+        let own = window.items();
+        let both = own.start.max(items.start)..own.end.min(items.end);
+        if both.is_empty() {
+            continue;
+        }
+        for (k, sums) in sums.iter_mut().enumerate() {
+            let at = N * window.before + k * window.count + both.start - own.start;
+            let given = &given[at..at + both.len()];
+            for (sum, given) in sums[both.start - items.start..].iter_mut().zip(given) {
+                *sum += *given;
             }
         }
     }
@@ -209,7 +222,7 @@ impl<T: Copy + Default> Collected<T> {
 
 /// What the items of some portions are given.
 pub struct Shares<'a, T, const N: usize> {
-    tiles: usize,
+    cut: Cut,
     count: usize,
     windows: &'a [Window],
     given: &'a mut [T],
@@ -221,17 +234,23 @@ impl<T: Send, const N: usize> Split for Shares<'_, T, N> {
     }
 
     fn split(self, at: usize) -> (Self, Self) {
-        // Where guests begin, a portion may have fewer tiles.
-        let (low, high) = self.windows.split_at(at.div_ceil(self.tiles));
-        let of_low = high[0].before - low[0].before;
-        let given = self.given.split_at_mut(N * of_low);
-        let part = |count, windows, given| Shares {
-            tiles: self.tiles,
+        // What is split within guests has their window behind.
+        let Cut { tiles, own } = self.cut;
+        let (low, high) = self.windows.split_at(at.min(own).div_ceil(tiles));
+        let before = |window: &Window| window.before - self.windows[0].before;
+        let of_low = (high.first()).map_or(self.given.len(), |window| N * before(window));
+        let given = self.given.split_at_mut(of_low);
+        let part = |own, count, windows, given| Shares {
+            cut: Cut { tiles, own },
             count,
             windows,
             given,
         };
-        (part(at, low, given.0), part(self.count - at, high, given.1))
+        let rest = own - at.min(own);
+        (
+            part(at.min(own), at, low, given.0),
+            part(rest, self.count - at, high, given.1),
+        )
     }
 }
 
@@ -245,13 +264,18 @@ pub struct Share<'a, T, const N: usize> {
 impl<'a, T: Copy + Default, const N: usize> Shares<'a, T, N> {
     /// Nothing so far, of the only portion.
     pub fn begin(self) -> Share<'a, T, N> {
+        let share = self.go_on();
+        share.given.fill(T::default());
+        share
+    }
+
+    /// What it has been given before, of the only portion.
+    pub fn go_on(self) -> Share<'a, T, N> {
         let (first, count) = (self.windows.first()).map_or((0, 0), |w| (w.first, w.count));
-        let given = &mut self.given[..N * count];
-        given.fill(T::default());
         Share {
             first,
             count,
-            given,
+            given: &mut self.given[..N * count],
         }
     }
 }
@@ -305,7 +329,8 @@ mod tests {
     use super::super::corners::NO_CORNERS;
     use super::*;
 
-    /// Cells along a line, each with the next four nodes: every inner node is given each number four times.
+    /// Cells along a line, each with the next four nodes: every inner node is given each number four times; and those
+    /// of guests that come late.
     #[test]
     fn nodes_are_given_what_all_portions_have_for_them() {
         let tiles = 3 * LEAST * PORTIONS + 5;
@@ -313,18 +338,14 @@ mod tests {
             .map(|c| std::array::from_fn(|i| c + i as u32))
             .collect();
         let mut portions = Portions::default();
-        let own = tiles - 11;
+        let (own, late) = (tiles - 11, tiles - 4);
         let mut mass = ConsistentMass::default();
         mass.renew(&cells, cells.len() + 3);
-        portions.renew(&cells, own, &mass);
+        portions.renew(&cells[..own * LANES], &mass);
+        portions.add_guests(late, &mass);
         let cut = portions.cut();
         assert!(own.div_ceil(cut.tiles) <= PORTIONS && cut.tiles >= LEAST);
-        let items = (0..tiles, portions.shares::<2>());
-        cut.fold(items, &|(tiles, shares): (
-            Range<usize>,
-            Shares<Quad, 2>,
-        )| {
-            let mut share = shares.begin();
+        let give = |tiles: Range<usize>, mut share: Share<Quad, 2>| {
             for nodes in cells.as_chunks::<LANES>().0[tiles].iter() {
                 let one = Lane::of(1.0);
                 let numbers: [Lane; 4] = std::array::from_fn(|i| {
@@ -335,17 +356,32 @@ mod tests {
                 share.give(Simd::best(), nodes, &vectors, &numbers);
                 share.give_alike(Simd::best(), nodes, [&one, &one], Some(&numbers));
             }
-        });
-        let nodes = cells.len() + 3;
-        for first in (0..nodes).step_by(100) {
-            let range = first..(first + 100).min(nodes);
-            let (mut sums, mut alike) = ([Quad::default(); 100], [Quad::default(); 100]);
-            (portions.nodes).sums(range.clone(), &mut [&mut sums, &mut alike]);
-            for ((n, sum), alike) in range.zip(sums).zip(alike) {
-                let times = (n + 1).min(nodes - n).min(4) as f64;
-                assert_eq!(sum, Quad([times, 0.0, 0.0, times * n as f64]));
-                assert_eq!(alike, Quad([times, times, times * n as f64, 0.0]));
+        };
+        let items = (0..late, portions.shares::<2>());
+        cut.fold(items, &|(tiles, shares): (
+            Range<usize>,
+            Shares<Quad, 2>,
+        )| give(tiles, shares.begin()));
+        portions.add_guests(tiles, &mass);
+        let (tiles, shares) = (0..tiles, portions.shares::<2>()).split(late).1;
+        give(tiles, shares.go_on());
+        let check = |nodes: usize, all: bool| {
+            for first in (0..nodes).step_by(100) {
+                let range = first..(first + 100).min(nodes);
+                let (mut sums, mut alike) = ([Quad::default(); 100], [Quad::default(); 100]);
+                let both = &mut [&mut sums[..], &mut alike[..]];
+                match all {
+                    true => portions.nodes.sums(range.clone(), both),
+                    false => portions.nodes.own_sums(range.clone(), both),
+                }
+                for ((n, sum), alike) in range.zip(sums).zip(alike) {
+                    let times = (n + 1).min(nodes - n).min(4) as f64;
+                    assert_eq!(sum, Quad([times, 0.0, 0.0, times * n as f64]));
+                    assert_eq!(alike, Quad([times, times, times * n as f64, 0.0]));
+                }
             }
-        }
+        };
+        check(cells.len() + 3, true);
+        check(own * LANES + 3, false);
     }
 }

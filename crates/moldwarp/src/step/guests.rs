@@ -1,143 +1,276 @@
 //! Particles that have come to another element than the one under which they lie in memory.
 //!
-//! To bring all particles into the order of their elements costs a quarter of a step, and in flow some cross
+//! To bring all particles into the order of their elements costs half a step, and in flow some cross
 //! in each step. So they stay where they are for some steps. In the meantime a step works on copies of them,
 //! *guests*, behind all other particles, in tiles of their own, whose lanes add to the sums of the cells that
 //! the guests are in; where they come from lies a particle without mass and volume, which adds exactly
-//! nothing. They may stay over the end of a step; whoever looks at particles sees every one at home with all that it has
-//! ([`Simulation::settle`]).
+//! nothing. Those that cross in a step are a batch, which comes behind the guests that are there, so that nothing else has to
+//! be moved or summed up again; a guest that crosses leaves a particle without mass, too. Guests stay over the end of a step;
+//! whoever looks at particles sees every one at home with all that it has ([`Simulation::settle`]).
 //!
 //! Only where one body moves in a mesh that stays; else particles are put in order in each step.
 
-use crate::lanes::LANES;
-use crate::particles::Particles;
+use crate::particles::{Order, Particles};
 use crate::simulation::Simulation;
+use crate::step::Active;
 
-/// One particle in so many may be a guest.
-const FEW: usize = 24;
+/// One particle in so many may be a guest, and one tile for so many of the others may be of guests.
+const FEW: usize = 12;
+const FEW_TILES: usize = 4;
 
-/// The guests.
+/// The guests, in the order of their places behind the other particles.
 #[derive(Clone, Debug, Default)]
 pub struct Guests {
-    /// Where each of them lies between steps.
-    homes: Vec<u32>,
-    /// Element and home of each, for sorting.
-    found: Vec<(u32, u32)>,
-    /// Cells, by lanes, that they are in, and their numbers.
-    cells: Vec<(u32, u32)>,
+    /// The place that each has come from: its home, or where it was a guest before.
+    from: Vec<u32>,
+    /// The elements that they have come to.
+    elements: Vec<u32>,
+    /// How many there were at the end of each batch.
+    ends: Vec<u32>,
     /// Whether they are behind the others now.
     present: bool,
+    /// Element and place of those of a batch, for sorting.
+    found: Vec<(u32, u32)>,
+    /// Cells that those of a batch are in, and their numbers.
+    cells: Vec<(u32, u32)>,
+    /// Element and home of guests that are at home, but not in the element under which they lie there.
+    away: Vec<(u32, u32)>,
 }
 
+/// What a simulation needs to know of guests that are at home, to go on: `from`, `elements` and `ends` of [`Guests`], and
+/// the elements under which those lie that have left their homes.
+pub type Known = [Vec<u32>; 4];
+
 impl Guests {
-    /// Where the particle at a place lies between steps.
-    pub fn home(&self, place: usize, particles: &Particles) -> usize {
-        let first = particles.len() - self.count();
-        match self.present && place >= first {
-            true => self.homes[place - first] as usize,
-            false => place,
-        }
-    }
-
-    fn count(&self) -> usize {
-        self.homes.len()
-    }
-
     /// How many particles are there twice now.
     pub fn twice(&self) -> usize {
-        if self.present { self.count() } else { 0 }
+        if self.present { self.from.len() } else { 0 }
     }
 
-    /// Homes of guests, and the elements under which they lie there.
-    pub fn filed<'a>(&'a self, filed: &'a [u32]) -> impl Iterator<Item = (u32, u32)> + 'a {
-        self.homes.iter().map(|&p| (p, filed[p as usize]))
+    /// Where the particle at a place lies between steps.
+    pub fn home(&self, mut place: usize, particles: &Particles) -> usize {
+        let first = particles.len() - self.twice();
+        while place >= first {
+            place = self.from[place - first] as usize;
+        }
+        place
     }
 
-    /// Those in an element, by their homes.
+    /// Where the particle is now that has its home at this place.
+    pub fn whereabouts(&self, home: usize, particles: &Particles) -> usize {
+        let first = particles.len() - self.twice();
+        let (mut place, mut next) = (home, 0);
+        while self.present && particles.mass[place] == 0.0 {
+            let mut later = self.from[next..].iter();
+            let step = later.position(|&p| p as usize == place);
+            next += step.expect("who is not there has gone on") + 1;
+            place = first + next - 1;
+        }
+        place
+    }
+
+    /// Those in an element that lie under another one, by their homes.
     pub fn inside(&self, e: u32) -> impl Iterator<Item = usize> {
-        let first = self.found.partition_point(|guest| guest.0 < e);
-        let own = self.found[first..]
+        let first = self.away.partition_point(|guest| guest.0 < e);
+        let own = self.away[first..]
             .iter()
             .take_while(move |guest| guest.0 == e);
         own.map(|guest| guest.1 as usize)
     }
 
-    /// Those at these places are guests.
-    pub fn expect(&mut self, homes: Vec<u32>) {
-        self.homes = homes;
+    /// What there is to know of guests that are at home.
+    pub fn known(&self, order: &Order) -> Known {
+        let homes = self.homes(order.count());
+        [
+            self.from.clone(),
+            self.elements.clone(),
+            self.ends.clone(),
+            homes.map(|p| order.filed[p]).collect(),
+        ]
+    }
+
+    /// Homes that have been left, of so many particles.
+    fn homes(&self, particles: usize) -> impl Iterator<Item = usize> {
+        homes(&self.from, particles)
+    }
+
+    /// Has guests again as they were known, that are at home, of so many particles in order. False if that cannot be.
+    pub(crate) fn expect(
+        &mut self,
+        [from, elements, ends, _]: &Known,
+        active: &mut Active,
+        particles: &Particles,
+        filed: &[u32],
+    ) -> bool {
+        let mut first = 0;
+        for &end in ends {
+            let Some(batch) = from.get(first..end as usize) else {
+                return false;
+            };
+            self.found.clear();
+            let elements = elements[first..].iter().copied();
+            self.found.extend(elements.zip(batch.iter().copied()));
+            self.found.sort_unstable();
+            if !self.lay_out(active, particles.len()) {
+                return false;
+            }
+            first = end as usize;
+        }
+        self.know_who_is_away(particles, filed);
+        (&self.from, &self.elements) == (from, elements)
     }
 
     /// All particles are in the elements under which they lie.
     pub fn clear(&mut self) {
         debug_assert!(!self.present);
-        self.homes.clear();
-        self.found.clear();
+        self.from.clear();
+        self.elements.clear();
+        self.ends.clear();
+        self.away.clear();
     }
 
     /// Room for as many as there may be, so that no step allocates.
-    pub fn make_room(&mut self, particles: &mut Particles) {
+    pub fn make_room(&mut self, particles: &mut Particles, order: &mut Order) {
         let most = particles.len() / FEW;
-        self.homes.reserve(most);
-        self.found.reserve(particles.len().min(2 * most));
-        self.cells.reserve(most);
+        for numbers in [&mut self.from, &mut self.elements, &mut self.ends] {
+            numbers.reserve(most);
+        }
+        for pairs in [&mut self.found, &mut self.cells, &mut self.away] {
+            pairs.reserve(most + 1);
+        }
         let Particles {
             id, body, element, ..
         } = particles;
         id.reserve_exact(most);
         body.reserve_exact(most);
         element.reserve_exact(most);
+        order.filed.reserve_exact(most);
         particles.for_working_columns(|column| column.reserve_exact(most));
     }
 
-    /// Most tiles that they can take.
-    pub fn most_tiles(particles: usize) -> usize {
-        (particles / FEW).div_ceil(LANES) + 1
+    /// Most tiles that they can take, if the others have so many.
+    pub fn most_tiles(particles: usize, own: usize) -> usize {
+        // The last batch may have a tile for every four.
+        own / FEW_TILES + particles / (4 * FEW) + 2
     }
 
-    fn arrive(&mut self, particles: &mut Particles) {
-        if self.homes.is_empty() || self.present {
-            return;
+    /// Finds those that have crossed. False if there would be too many guests.
+    fn find(&mut self, particles: &Particles, filed: &[u32]) -> bool {
+        let most = (particles.len() - self.twice()) / FEW - self.from.len();
+        self.found.clear();
+        let (now, filed) = (particles.element.chunks(64), filed.chunks(64));
+        for ((now, filed), first) in now.zip(filed).zip((0..).step_by(64)) {
+            // Without leaving early, that it be done side by side.
+            if (now.iter().zip(filed)).fold(true, |same, (a, b)| same & (a == b)) {
+                continue;
+            }
+            let both = now.iter().zip(filed).zip(first..);
+            let crossed = both.filter(|((now, filed), _)| now != filed);
+            for ((&e, _), place) in crossed {
+                if self.found.len() == most {
+                    return false;
+                }
+                self.found.push((e, place));
+            }
         }
+        // By element, and in each in the order of their places.
+        self.found.sort_unstable();
+        true
+    }
+
+    /// Lays out those that have been found as a batch. False if one is where there is no cell; `particles` are not counted
+    /// twice.
+    fn lay_out(&mut self, active: &mut Active, particles: usize) -> bool {
+        let Guests {
+            from,
+            elements,
+            ends,
+            found,
+            cells,
+            ..
+        } = self;
+        cells.clear();
+        for group in found.chunk_by(|a, b| a.0 == b.0) {
+            let Some(cell) = active.cell(group[0].0 as usize, 0) else {
+                return false;
+            };
+            cells.push((cell as u32, group.len() as u32));
+        }
+        let count = from.len() + found.len();
+        from.resize(count, 0);
+        elements.resize(count, 0);
+        ends.push(count as u32);
+        active.invite(cells, |rank, place| {
+            let guest = place as usize - particles;
+            (elements[guest], from[guest]) = found[rank as usize];
+        });
+        true
+    }
+
+    /// Those from the `first` one on come.
+    fn arrive(&mut self, first: usize, particles: &mut Particles, filed: &mut Vec<u32>) {
         self.present = true;
+        let from = &self.from[first..];
         let Particles {
             id, body, element, ..
         } = particles;
-        copy(id, &self.homes);
-        copy(body, &self.homes);
-        copy(element, &self.homes);
-        particles.for_working_columns(|column| copy(column, &self.homes));
-        for &p in &self.homes {
-            (particles.mass[p as usize], particles.volume[p as usize]) = (0.0, 0.0);
+        copy(id, from);
+        copy(body, from);
+        copy(element, from);
+        filed.extend_from_slice(&self.elements[first..]);
+        particles.for_working_columns(|column| copy(column, from));
+        for &p in from {
+            let p = p as usize;
+            (particles.mass[p], particles.volume[p]) = (0.0, 0.0);
+            particles.element[p] = filed[p];
         }
     }
 
-    fn leave(&mut self, particles: &mut Particles) {
+    fn leave(&mut self, particles: &mut Particles, filed: &mut Vec<u32>) {
         if !self.present {
             return;
         }
         self.present = false;
+        let from = &self.from[..];
         let Particles {
             id, body, element, ..
         } = particles;
-        put_back(id, &self.homes);
-        put_back(body, &self.homes);
-        put_back(element, &self.homes);
-        particles.for_working_columns(|column| put_back(column, &self.homes));
+        put_back(id, from);
+        put_back(body, from);
+        put_back(element, from);
+        filed.truncate(element.len());
+        particles.for_working_columns(|column| put_back(column, from));
+        self.know_who_is_away(particles, filed);
+    }
+
+    fn know_who_is_away(&mut self, particles: &Particles, filed: &[u32]) {
+        let mut away = std::mem::take(&mut self.away);
+        away.clear();
+        let homes = self.homes(particles.len());
+        let all = homes.map(|p| (particles.element[p], p as u32));
+        away.extend(all.filter(|&(e, p)| e != filed[p as usize]));
+        away.sort_unstable();
+        self.away = away;
     }
 }
 
-fn copy<T: Copy>(values: &mut Vec<T>, homes: &[u32]) {
-    for &p in homes {
+/// Those of the places that guests have come from that are homes of so many particles.
+pub(crate) fn homes(from: &[u32], particles: usize) -> impl Iterator<Item = usize> {
+    let all = from.iter().map(|&p| p as usize);
+    all.filter(move |&p| p < particles)
+}
+
+fn copy<T: Copy>(values: &mut Vec<T>, from: &[u32]) {
+    for &p in from {
         values.push(values[p as usize]);
     }
 }
 
-fn put_back<T: Copy>(values: &mut Vec<T>, homes: &[u32]) {
-    let count = values.len() - homes.len();
-    for (k, &p) in homes.iter().enumerate() {
-        values[p as usize] = values[count + k];
+/// The last ones first: one that has come from a guest's place goes there, and then on with that one.
+fn put_back<T: Copy>(values: &mut Vec<T>, from: &[u32]) {
+    for &p in from.iter().rev() {
+        values[p as usize] = values.pop().expect("one for each");
     }
-    values.truncate(count);
 }
 
 impl Simulation {
@@ -148,16 +281,13 @@ impl Simulation {
 
     /// Guests come, if they are not there.
     pub(super) fn guests_arrive(&mut self) {
-        self.guests.arrive(&mut self.particles);
+        if !self.guests.present && !self.guests.from.is_empty() {
+            (self.guests).arrive(0, &mut self.particles, &mut self.order.filed);
+        }
     }
 
-    pub(super) fn guests_leave(&mut self) {
-        self.guests.leave(&mut self.particles);
-    }
-
-    /// Finds guests and their cells anew, after particles have crossed. False if there would be too many, or
-    /// one is where there is no cell.
-    pub(crate) fn regroup(&mut self) -> bool {
+    /// Has guests again as they were known; they are at home. False if that cannot be.
+    pub(crate) fn expect(&mut self, known: &Known) -> bool {
         let Simulation {
             particles,
             order,
@@ -166,34 +296,39 @@ impl Simulation {
             guests,
             ..
         } = self;
-        let places = particles.element.iter().zip(&order.filed).zip(0..);
-        let moved = places.filter(|((now, filed), _)| now != filed);
-        guests.found.clear();
-        guests.found.extend(moved.map(|((&e, _), p)| (e, p)));
-        // Those that have come back stay guests: the sums of the others need not be made anew.
-        let filed = |p: u32| order.filed[p as usize];
-        let back = |&p: &u32| (particles.element[p as usize] == filed(p)).then_some((filed(p), p));
-        guests.found.extend(guests.homes.iter().filter_map(back));
-        if guests.found.len() * FEW > particles.len() {
+        let tiles = active.tiles.len();
+        if !guests.expect(known, active, particles, &order.filed) {
             return false;
         }
-        // By element, and in each in the order of their homes.
-        guests.found.sort_unstable();
-        guests.cells.clear();
-        for group in guests.found.chunk_by(|a, b| a.0 == b.0) {
-            let Some(cell) = active.cell(group[0].0 as usize, 0) else {
-                return false;
-            };
-            guests.cells.push((cell as u32, group.len() as u32));
+        if !known[0].is_empty() {
+            cells.add_guests(active, tiles);
         }
-        guests.homes.clear();
-        guests.homes.resize(guests.found.len(), 0);
-        let first = particles.len() as u32;
-        let (found, homes) = (&guests.found, &mut guests.homes);
-        active.invite(&guests.cells, |rank, place| {
-            homes[(place - first) as usize] = found[rank as usize].1;
-        });
-        cells.renew_guests(active);
+        true
+    }
+
+    pub(super) fn guests_leave(&mut self) {
+        (self.guests).leave(&mut self.particles, &mut self.order.filed);
+    }
+
+    /// Makes those that have crossed guests. False if there would be too many, or one is where there is no cell.
+    pub(super) fn regroup(&mut self) -> bool {
+        let Simulation {
+            particles,
+            order,
+            active,
+            cells,
+            guests,
+            ..
+        } = self;
+        let (first, tiles, own) = (guests.from.len(), active.tiles.len(), active.own_tiles());
+        if tiles - own > own / FEW_TILES || !guests.find(particles, &order.filed) {
+            return false;
+        }
+        if !guests.lay_out(active, particles.len() - guests.twice()) {
+            return false;
+        }
+        guests.arrive(first, particles, &mut order.filed);
+        cells.add_guests(active, tiles);
         true
     }
 

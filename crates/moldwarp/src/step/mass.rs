@@ -102,9 +102,8 @@ impl ConsistentMass {
         link(first, |low, k| found[room[low] as usize + k], links, linked);
     }
 
-    /// The same after guests have changed: each lane's cell has the pairs of another lane.
-    pub fn renew_guests(&mut self, own: usize, same: impl Iterator<Item = usize>) {
-        self.pairs.truncate(own);
+    /// The same after guests have come: each of their lanes' cells has the pairs of another lane.
+    pub fn add_guests(&mut self, same: impl Iterator<Item = usize>) {
         for lane in same {
             self.pairs.push(self.pairs[lane]);
         }

@@ -135,6 +135,14 @@ pub(super) struct Crossing {
     pub gone: First,
 }
 
+impl Crossing {
+    /// Whether none has done anything but cross.
+    pub fn is_plain(&self) -> bool {
+        let others = [self.outside, self.passed, self.gone];
+        others.iter().all(|first| first.get().is_none())
+    }
+}
+
 impl Sum for Crossing {
     fn plus(self, other: Crossing) -> Crossing {
         Crossing {

@@ -36,7 +36,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         &mut [Node],
     )| {
         let mut sums = [Quad::default(); BLOCK];
-        (portions.nodes).sums(slots.clone(), &mut [&mut sums]);
+        (portions.nodes).own_sums(slots.clone(), &mut [&mut sums]);
         for ((slot, node), &sum) in slots.zip(nodes).zip(&sums) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
@@ -123,7 +123,7 @@ pub(crate) fn unheld(sim: &mut Simulation) -> impl Fn(u32) -> Vec3 + '_ {
             .map(|slot| {
                 let node = &sim.nodes[slot];
                 let mut sum = [Quad::default()];
-                (sim.cells.portions.nodes).sums(slot..slot + 1, &mut [&mut sum]);
+                (sim.cells.portions.nodes).own_sums(slot..slot + 1, &mut [&mut sum]);
                 let (internal, weighed) = pushed(sum[0]);
                 let weighed = sim.reference.as_ref().map_or(node.mass, |_| weighed);
                 internal + sim.gravity * weighed + node.load
@@ -143,11 +143,12 @@ fn apply_loads(sim: &mut Simulation) {
         clock,
         switches,
         fields,
+        guests,
         ..
     } = sim;
     let mesh = &plan.mesh;
     for point in loads.iter() {
-        let p = point.particle as usize;
+        let p = guests.whereabouts(point.particle as usize, particles);
         let e = particles.element[p] as usize;
         let n = mesh.barycentric(e, particles.position.at(p) + point.offset);
         let load = point.load as usize;

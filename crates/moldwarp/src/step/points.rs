@@ -106,7 +106,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut kick, mut speeds) = (Kick::default(), [Lane::of(0.0); 3]);
         let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
         // Work of the particles' stresses in the halves of the drift.
-        let (mut begun, mut ended) = (Lane::of(0.0), [Lane::of(0.0); 2]);
+        let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
         for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
             let nodes = active.tile_nodes(number);
             shapes.enter(simd, &mut corners, nodes, &shared.places);
@@ -177,21 +177,20 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             if stays {
                 let pairs = pairs.tile_pairs(number);
                 sums.leave(simd, tile, &mut records, nodes, pairs, &mut giving);
-                let guests = usize::from(number >= active.own_tiles());
-                own_work(simd, &deformation, records.sum, &mut ended[guests]);
+                own_work(simd, &deformation, records.sum, &mut ended);
             }
         }
-        let [begun, own, guests] = [&begun, &ended[0], &ended[1]].map(lanes::sum);
-        let sums = [motion.work(), kick.kinetic(), begun, own, guests];
+        let [begun, ended] = [&begun, &ended].map(lanes::sum);
+        let sums = [motion.work(), kick.kinetic(), begun, ended];
         ((stress.end(), sums), crossing)
     };
-    type Found = ((([f64; 3], Smallest), [f64; 5]), Crossing);
+    type Found = ((([f64; 3], Smallest), [f64; 4]), Crossing);
     let (((works, least), sums), crossing): Found = cut.fold(all, &work);
     ledger.particle_stress_work(works);
     ledger.gravity_work(sums[0]);
     *kinetic = Some(sums[1]);
     ledger.grid_stress_work(sums[2]);
-    cells.worked = [sums[3], sums[4]];
+    cells.worked = sums[3];
     cells.summed = if stays { Summed::All } else { Summed::Nothing };
     (least.0 <= 0.0, crossing)
 }

@@ -59,7 +59,7 @@ fn means_at_nodes<T: Send>(
     let items = (0..means.len(), means);
     fold(items, BLOCK, &|(slots, means): (Range<usize>, &mut [T])| {
         let mut sums = [Quad::default(); BLOCK];
-        portions.nodes.sums(slots, &mut [&mut sums]);
+        portions.nodes.own_sums(slots, &mut [&mut sums]);
         for (mean, &Quad([sum, all, ..])) in means.iter_mut().zip(&sums) {
             let whole = factor * all;
             *of(mean) = if all > 0.0 { sum / whole } else { 0.0 };
@@ -103,14 +103,14 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     };
     let (cut, known) = (portions.cut(), &forces[..]);
     let items = (0..known.len(), portions.shares());
-    cut.fold(items, &|(tiles, shares): (
+    cut.fold_own(items, &|(tiles, shares): (
         Range<usize>,
         Shares<Quad, 1>,
     )| {
         let (mut traces, mut weights) = (Lane::of(0.0), Lane::of(0.0));
         let (mut shapes, mut share) = (Shapes::default(), shares.begin());
         let mut corners = NO_CORNERS;
-        for tile in active.without_guests(tiles) {
+        for tile in tiles {
             let (force, nodes) = (&known[tile], active.tile_nodes(tile));
             shapes.enter(simd, &mut corners, nodes, places);
             for l in 0..LANES {
@@ -125,7 +125,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     means_at_nodes(portions, mean_stress, 12.0, |mean| mean);
     let (mean_stress, drift) = (&mean_stress[..], &drift[..]);
     let items = (0..forces.len(), &mut forces[..], portions.shares());
-    let work = cut.fold(items, &|(tiles, forces, shares): (
+    let work = cut.fold_own(items, &|(tiles, forces, shares): (
         Range<usize>,
         &mut [CellForce],
         Shares<Quad, 1>,
@@ -133,7 +133,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         let (mut work, mut moved, mut pushed) = (0.0, NO_CORNERS, NO_CORNERS);
         let (mut means, mut shapes) = (Lane::of(0.0), Shapes::default());
         let mut share = shares.begin();
-        for (tile, force) in active.without_guests(tiles).zip(forces) {
+        for (tile, force) in tiles.zip(forces) {
             let nodes = active.tile_nodes(tile);
             shapes.enter(simd, &mut pushed, nodes, places);
             sum_nodes(&mut means, nodes, mean_stress);

@@ -149,9 +149,8 @@ pub struct Cells {
     pub shortest: f64,
     /// Whose sums the last drift has made.
     pub summed: Summed,
-    /// Half the work of the particles' stresses in the last drift as far as sums are made: of cells without guests, and
-    /// of guests, J.
-    pub worked: [f64; 2],
+    /// Half the work of the particles' stresses in the last drift as far as sums are made, J.
+    pub worked: f64,
 }
 
 /// Cells that have their sums.
@@ -159,8 +158,8 @@ pub struct Cells {
 pub enum Summed {
     #[default]
     Nothing,
-    /// All but those of guests.
-    Own,
+    /// Those before this tile, the first one of guests that have just come.
+    Before(usize),
     All,
 }
 
@@ -237,7 +236,7 @@ impl Cells {
     pub(crate) fn renew(&mut self, active: &Active) {
         self.resize(active);
         self.mass.renew(&active.cell_nodes, active.nodes.len());
-        (self.portions).renew(&active.cell_nodes, active.own_tiles(), &self.mass);
+        self.portions.renew(&active.cell_nodes, &self.mass);
         self.summed = Summed::Nothing;
     }
 
@@ -259,7 +258,7 @@ impl Cells {
         keep(&mut self.forces, kept, &self.sums);
     }
 
-    /// Room for guests. A portion of theirs may have all nodes.
+    /// Room for guests.
     pub(crate) fn make_room(&mut self, tiles: usize, nodes: usize) {
         self.sums.reserve(tiles);
         self.fills.reserve(tiles);
@@ -269,14 +268,13 @@ impl Cells {
         self.portions.make_room(nodes, self.mass.values.len());
     }
 
-    /// The same after guests have been laid out anew.
-    pub(crate) fn renew_guests(&mut self, active: &Active) {
+    /// The same after guests have come, in the tiles from this one on.
+    pub(crate) fn add_guests(&mut self, active: &Active, tile: usize) {
         self.resize(active);
-        self.mass
-            .renew_guests(active.own_tiles() * LANES, active.guest_pairs());
-        (self.portions).renew_guests(&active.cell_nodes, &self.mass);
+        self.mass.add_guests(active.guest_pairs(tile));
+        self.portions.add_guests(active.tiles.len(), &self.mass);
         if self.summed == Summed::All {
-            self.summed = Summed::Own;
+            self.summed = Summed::Before(tile);
         }
     }
 

@@ -203,14 +203,14 @@ fn gradients(sim: &mut Simulation) {
     let (fills, forces) = (&fills[..], &forces[..]);
     let cut = portions.cut();
     let items = (0..sums.len(), portions.shares());
-    let work = cut.fold(items, &|(tiles, shares): (
+    let work = cut.fold_own(items, &|(tiles, shares): (
         Range<usize>,
         Shares<Quad, 1>,
     )| {
         let (mut moved, mut shapes) = (NO_CORNERS, Shapes::default());
         let mut share = shares.begin();
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
-        for tile in active.without_guests(tiles) {
+        for tile in tiles {
             let nodes = active.tile_nodes(tile);
             shapes.enter(simd, &mut moved, nodes, &shared.places);
             load_nodes(simd, &mut moved, nodes, &shared.moved);

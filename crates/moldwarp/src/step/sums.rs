@@ -15,6 +15,7 @@ use crate::lanes::{
     for_each_simd, get, held, load, load_one, set,
 };
 use crate::material::STATE_SIZE;
+use crate::parallel::Split;
 use crate::particles::Particles;
 use crate::plan::Plan;
 use crate::simulation::Simulation;
@@ -319,20 +320,21 @@ for_each_simd! {
     }
 }
 
-/// The sums that the last drift has not made: of all cells, or of those of guests; and the second half of the work of the
-/// particles' stresses in it.
+/// The sums that the last drift has not made: of all cells, or of guests that have just come; and the second half of the
+/// work of the particles' stresses in it.
 pub(super) fn run(sim: &mut Simulation, before: f64) {
     let made = std::mem::take(&mut sim.cells.summed);
-    let [own, guests] = std::mem::take(&mut sim.cells.worked);
-    if made != Summed::All {
-        // They stay for the next drift.
-        sim.guests_arrive();
-        let work = make(sim, made, before > 0.0);
-        let known = if made == Summed::Own { own } else { 0.0 };
-        sim.ledger.grid_stress_work(known + work);
-    } else {
-        sim.ledger.grid_stress_work(own + guests);
-    }
+    let known = std::mem::take(&mut sim.cells.worked);
+    let work = match made {
+        Summed::All => known,
+        Summed::Before(tile) => known + make(sim, tile, before > 0.0),
+        Summed::Nothing => {
+            // They stay for the next drift.
+            sim.guests_arrive();
+            make(sim, 0, before > 0.0)
+        }
+    };
+    sim.ledger.grid_stress_work(work);
 }
 
 /// Whether what cells are made of has to be summed.
@@ -368,8 +370,9 @@ pub(super) fn each((sums, medium): Arrays) -> impl Iterator<Item = Records> {
     })
 }
 
-/// Returns half the work in the last drift, J, if it has `drifted`, of the particles in the cells that it has been to.
-fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
+/// From this tile on: it is the first one, or the first one of guests. Returns half the work in the last drift, J, if it has
+/// `drifted`, of the particles in the cells that it has been to.
+fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
     let Simulation {
         plan,
         particles,
@@ -392,11 +395,16 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
     let (arrays, given, mass, cut) = arrays(cells, differs);
     type All<'a> = (Arrays<'a>, Given<'a>);
     let all = ByTile::new(&active.tiles, (), (arrays, given));
+    // More guests add to what the others have given.
+    let more = from > active.own_tiles();
     let work = |block: ByTile<(), All>| {
         let tiles = block.each();
         let (arrays, (to_nodes, to_pairs)) = block.cells;
         let (mut side, mut sums) = (Side::default(), Sums::default());
-        let mut giving = (to_nodes.begin(), to_pairs.begin());
+        let mut giving = match more {
+            true => (to_nodes.go_on(), to_pairs.go_on()),
+            false => (to_nodes.begin(), to_pairs.begin()),
+        };
         let (mut moved, mut work) = (NO_CORNERS, Lane::of(0.0));
         let mut shapes = Shapes::default();
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
@@ -432,9 +440,9 @@ fn make(sim: &mut Simulation, made: Summed, drifted: bool) -> f64 {
         }
         lanes::sum(&work)
     };
-    match made {
-        Summed::Own => cut.fold_guests(all, &work),
-        _ => cut.fold(all, &work),
+    match from {
+        0 => cut.fold(all, &work),
+        _ => work(all.split(from).1),
     }
 }
 

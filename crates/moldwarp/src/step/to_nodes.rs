@@ -145,72 +145,73 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
     let items = (0..sums.len(), &mut fills[..], (forces, portions.shares()));
     type Out<'a> = (Option<&'a mut [CellForce]>, Shares<'a, Quad, 1>);
     let limits = Limits::new(&plan.numerics, elasticity);
-    let (work, least): (f64, Smallest) = cut.fold(items, &|(range, fills, (forces, shares)): (
-        Range<usize>,
-        &mut [CellFill],
-        Out,
-    )| {
-        let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
-        let (mut work, mut passing) = (Lane::of(0.0), CellForce::default());
-        let (mut shapes, mut steps) = (Shapes::default(), Steps::default());
-        let mut forces = forces.map(|forces| forces.iter_mut());
-        for (tile, fill) in active.without_guests(range).zip(fills) {
-            let nodes = active.tile_nodes(tile);
-            let kept = forces.as_mut().and_then(|forces| forces.next());
-            let force = kept.unwrap_or(&mut passing);
-            for l in 0..LANES {
-                let filled = mixed && active.is_cell[tile * LANES + l];
-                let filled = filled && is_filled(&nodes[l], &shared.filling);
-                fill.filled[l] = f64::from(u8::from(filled));
-            }
-            corners::sum_nodes(&mut fill.density, nodes, &shared.density);
-            shapes.enter(simd, &mut pushed, nodes, &shared.places);
-            let sum = &sums[tile];
-            stand_in(simd, &shapes, sum, fill, force);
-            steps.add(simd, &limits, &shapes, sum, medium.get(tile), fill);
-            if reference.is_some() {
-                force.weighed = medium[tile].shares;
-            }
-            for l in 0..LANES {
-                if fill.filled[l] == 0.0 || (sum.volume[l] > 0.0 && reference.is_none()) {
-                    continue;
+    let (work, least): (f64, Smallest) =
+        cut.fold_own(items, &|(range, fills, (forces, shares)): (
+            Range<usize>,
+            &mut [CellFill],
+            Out,
+        )| {
+            let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
+            let (mut work, mut passing) = (Lane::of(0.0), CellForce::default());
+            let (mut shapes, mut steps) = (Shapes::default(), Steps::default());
+            let mut forces = forces.map(|forces| forces.iter_mut());
+            for (tile, fill) in range.zip(fills) {
+                let nodes = active.tile_nodes(tile);
+                let kept = forces.as_mut().and_then(|forces| forces.next());
+                let force = kept.unwrap_or(&mut passing);
+                for l in 0..LANES {
+                    let filled = mixed && active.is_cell[tile * LANES + l];
+                    let filled = filled && is_filled(&nodes[l], &shared.filling);
+                    fill.filled[l] = f64::from(u8::from(filled));
                 }
-                let c = tile * LANES + l;
-                let e = active.elements[c] as usize;
-                let around = around(c, active, mesh, sums, medium);
-                let mean = match &reference {
-                    Some(reference) => {
-                        let shares = get(&medium[tile].shares, l);
-                        let weighed = reference.weighed(mesh, e, shares, &around);
-                        set(&mut force.weighed, l, weighed);
-                        reference.mean_stress(mesh, e, &around)
+                corners::sum_nodes(&mut fill.density, nodes, &shared.density);
+                shapes.enter(simd, &mut pushed, nodes, &shared.places);
+                let sum = &sums[tile];
+                stand_in(simd, &shapes, sum, fill, force);
+                steps.add(simd, &limits, &shapes, sum, medium.get(tile), fill);
+                if reference.is_some() {
+                    force.weighed = medium[tile].shares;
+                }
+                for l in 0..LANES {
+                    if fill.filled[l] == 0.0 || (sum.volume[l] > 0.0 && reference.is_none()) {
+                        continue;
                     }
-                    None => around.mean_stress(),
-                };
-                set(&mut force.stress, l, mean.map(|s| s * mesh.volumes[e]));
+                    let c = tile * LANES + l;
+                    let e = active.elements[c] as usize;
+                    let around = around(c, active, mesh, sums, medium);
+                    let mean = match &reference {
+                        Some(reference) => {
+                            let shares = get(&medium[tile].shares, l);
+                            let weighed = reference.weighed(mesh, e, shares, &around);
+                            set(&mut force.weighed, l, weighed);
+                            reference.mean_stress(mesh, e, &around)
+                        }
+                        None => around.mean_stress(),
+                    };
+                    set(&mut force.stress, l, mean.map(|s| s * mesh.volumes[e]));
+                }
+                if per_step > 0.0 {
+                    load_nodes(simd, &mut moved, nodes, &shared.moved);
+                    let moduli = match medium.get(tile) {
+                        Some(medium) => medium.moduli,
+                        None => alike.map(|m| times(m, &sum.volume)),
+                    };
+                    let cells = Resisting {
+                        shapes: &shapes,
+                        sum,
+                        fill,
+                        moduli: &moduli,
+                    };
+                    resist(simd, &cells, force, &moved, per_step, &mut work);
+                } else if viscosity > 0.0 {
+                    force.viscous = [Lane::of(0.0); 6];
+                }
+                if last {
+                    push(simd, &shapes, force, nodes, &mut pushed, &mut share);
+                }
             }
-            if per_step > 0.0 {
-                load_nodes(simd, &mut moved, nodes, &shared.moved);
-                let moduli = match medium.get(tile) {
-                    Some(medium) => medium.moduli,
-                    None => alike.map(|m| times(m, &sum.volume)),
-                };
-                let cells = Resisting {
-                    shapes: &shapes,
-                    sum,
-                    fill,
-                    moduli: &moduli,
-                };
-                resist(simd, &cells, force, &moved, per_step, &mut work);
-            } else if viscosity > 0.0 {
-                force.viscous = [Lane::of(0.0); 6];
-            }
-            if last {
-                push(simd, &shapes, force, nodes, &mut pushed, &mut share);
-            }
-        }
-        (lanes::sum(&work), steps.shortest(&limits))
-    });
+            (lanes::sum(&work), steps.shortest(&limits))
+        });
     *shortest = least.0;
     ledger.viscous_work(work);
 }

@@ -276,24 +276,40 @@ impl Simulation {
         };
         self.guests.clear();
         self.active.rebuild(&grid, &mut self.order);
-        self.order.settle(&mut self.particles);
+        let Simulation {
+            plan,
+            particles,
+            order,
+            active,
+            nodes,
+            shared,
+            cells,
+            ..
+        } = self;
+        let active = &*active;
+        // Particles move while cells learn of their nodes: the latter takes one thread.
+        rayon::join(
+            || order.settle(particles),
+            || {
+                cells.renew(active);
+                nodes.clear();
+                nodes.resize(active.nodes.len(), Node::default());
+                for (&drift, &key) in self.spare_drifts.iter().zip(&self.spare_numbers) {
+                    let slot = active.slot_of_key.get(key as usize);
+                    if let Some(new) = slot.and_then(|&s| nodes.get_mut(s as usize)) {
+                        [new.grid_velocity, new.moved] = drift;
+                    }
+                }
+                shared.renew(nodes);
+                shared.place(active, &plan.mesh);
+            },
+        );
         let destination = &self.order.destination;
         for point in &mut self.loads {
             point.particle = destination[point.particle as usize];
         }
         self.probes.reorder(destination);
         self.contacts.find(&self.active);
-        self.nodes.clear();
-        self.nodes.resize(self.active.nodes.len(), Node::default());
-        for (&drift, &key) in self.spare_drifts.iter().zip(&self.spare_numbers) {
-            let slot = self.active.slot_of_key.get(key as usize);
-            if let Some(new) = slot.and_then(|&s| self.nodes.get_mut(s as usize)) {
-                [new.grid_velocity, new.moved] = drift;
-            }
-        }
-        self.shared.renew(&self.nodes);
-        self.shared.place(&self.active, &self.plan.mesh);
-        self.cells.renew(&self.active);
         if self.may_have_guests() {
             let tiles = Guests::most_tiles(self.particles.len(), self.active.own_tiles());
             self.guests.make_room(&mut self.particles, &mut self.order);

@@ -1,31 +1,40 @@
-//! Principal values and directions of a symmetric tensor.
+//! Principal values of a symmetric tensor, and tensors with the same directions and other values.
 //!
 //! The deviator, scaled to B with B : B = 6, has the characteristic equation β³ − 3β − 2h = 0 with
 //! h = det B / 2 in [−1, 1]. Its root of largest magnitude lies in √3 ≤ |β| ≤ 2, at least √3 away
-//! from the other two whatever their distance from each other, so this root and its direction are
-//! well conditioned. The other two follow from a plane rotation in the orthogonal complement of
-//! that direction, which is exact to round-off for equal and for nearly equal values (the formula
-//! with three cosines loses half of the digits there). The scheme resembles the non-iterative
-//! one of D. Eberly, "A robust eigensolver for 3×3 symmetric matrices" (2014), with Newton's
-//! iteration instead of trigonometric functions.
+//! from the other two whatever their distance from each other, so this lonely root is well conditioned, and so is the
+//! projector onto its direction, P = adj(B − β I) / tr adj(B − β I). What remains is a plane tensor,
+//! D = B + β/2 I − 3/2 β P, with the values ± r, r² = D : D / 2: exact to round-off for equal and for nearly equal values
+//! (the formula with three cosines loses half of the digits there). With other values a for the lonely one and b, c for the
+//! others the tensor is
+//!
+//!   (b + c)/2 I + (a − (b + c)/2) P + (b − c)/(2 r) D,
+//!
+//! which takes no directions. The way to the lonely root resembles the non-iterative scheme of D. Eberly, "A robust
+//! eigensolver for 3×3 symmetric matrices" (2014), with Newton's iteration instead of trigonometric functions.
 
 use super::Voigt;
-use crate::Vec3;
 use crate::lanes::either;
 
-/// σ = Σ valuesᵢ nᵢ ⊗ nᵢ.
+/// A symmetric tensor by its principal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principal {
     /// Largest first.
     pub values: [f64; 3],
-    /// Unit vectors at right angles, in the order of the values. Signs are arbitrary.
-    pub directions: [Vec3; 3],
+    /// Whether the lonely value is the smallest one; else it is the largest one.
+    last: bool,
+    /// Projector onto its direction.
+    lonely: Voigt,
+    /// D, or nothing where r is far below round-off.
+    plane: Voigt,
+    /// 1 / r, or 0.
+    over_radius: f64,
 }
 
-/// Principal values and directions of a stress (tensor components, Voigt order).
+/// Principal values of a stress (tensor components, Voigt order).
 ///
-/// Values are exact to a few units in the last place of the largest component, directions
-/// orthonormal to round-off. Where values coincide, the directions are some orthonormal choice.
+/// They are exact to a few units in the last place of the largest component. Where values coincide, directions
+/// are some orthonormal choice.
 pub fn principal(s: &Voigt) -> Principal {
     let b = deviator(s);
     let norm_squared = square(&b);
@@ -47,8 +56,29 @@ pub fn principal(s: &Voigt) -> Principal {
     } else {
         Principal {
             values: [s[0], s[1], s[2]],
-            directions: [Vec3::X, Vec3::Y, Vec3::Z],
+            last: false,
+            lonely: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            plane: [0.0; 6],
+            over_radius: 0.0,
         }
+    }
+}
+
+impl Principal {
+    /// The tensor that has these values, largest first, in the same directions: exactly isotropic if they are equal.
+    #[inline(always)]
+    pub fn with(&self, [first, second, third]: &[f64; 3]) -> Voigt {
+        let (alone, top, bottom) = (
+            either(self.last, *third, *first),
+            either(self.last, *first, *second),
+            either(self.last, *second, *third),
+        );
+        let centre = 0.5 * (top + bottom);
+        let (along, across) = (alone - centre, 0.5 * (top - bottom) * self.over_radius);
+        std::array::from_fn(|k| {
+            let own = self.lonely[k] * along + self.plane[k] * across;
+            if k < 3 { centre + own } else { own }
+        })
     }
 }
 
@@ -68,11 +98,12 @@ pub fn principal_if_ordinary(s: &Voigt) -> (Principal, bool) {
     (decompose(s, &b, norm_squared), is_ordinary(norm_squared))
 }
 
-/// s − tr s/3 I, but for round-off: any shift will do.
+/// s − tr s/3 I. Its trace is zero but for its own round-off, not only for that of s.
 #[inline(always)]
 fn deviator(s: &Voigt) -> Voigt {
     let mean = super::trace(s) * (1.0 / 3.0);
-    [s[0] - mean, s[1] - mean, s[2] - mean, s[3], s[4], s[5]]
+    let (x, y) = (s[0] - mean, s[1] - mean);
+    [x, y, -(x + y), s[3], s[4], s[5]]
 }
 
 /// b : b
@@ -90,31 +121,20 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let determinant = b[0] * (b[1] * b[2] - b[4] * b[4]) - b[3] * (b[3] * b[2] - b[4] * b[5])
         + b[5] * (b[3] * b[4] - b[1] * b[5]);
     let half = 0.5 * determinant / (unit * unit_squared);
-    let lonely = lonely_direction(b, unit * lonely_root(half.abs().min(1.0)).copysign(half));
-    let (u, w) = complement(lonely);
+    let alone = unit * lonely_root(half.abs().min(1.0)).copysign(half);
+    let lonely = projector(b, alone);
 
-    // A rotation by the half angle makes the 2×2 block of u and w diagonal, with values
-    // `centre` ± `radius`.
-    let (bu, bw) = (super::times(b, u), super::times(b, w));
-    let (uu, uw, ww) = (u.dot(bu), u.dot(bw), w.dot(bw));
-    let centre = 0.5 * (uu + ww);
-    let difference = 0.5 * (ww - uu);
-    let radius = (difference * difference + uw * uw).sqrt();
-    // Equal values, far below round-off: no rotation.
+    let centre = -0.5 * alone;
+    let apart = alone - centre;
+    let plane: Voigt = std::array::from_fn(|k| {
+        let own = b[k] - lonely[k] * apart;
+        if k < 3 { own - centre } else { own }
+    });
+    let radius = (0.5 * square(&plane)).sqrt();
+    // Equal values, far below round-off.
     let differ = radius > 1e-20 * unit;
-    let over = 1.0 / radius;
-    let cosine = either(differ, difference.abs() * over, 1.0);
-    let sine = either(differ, uw * over, 0.0);
-    let large = (0.5 + 0.5 * cosine).sqrt();
-    let small = 0.5 * sine / large;
-    let ascending = difference >= 0.0;
-    let f = either(ascending, small, large);
-    let g = either(ascending, large, small);
-    let (high, low) = (u * f + w * g, u * g - w * f);
-
     // The lonely value is first or last.
     let mean = s[0] - b[0];
-    let alone = lonely.dot(super::times(b, lonely));
     let last = half < 0.0;
     let (top, bottom) = (mean + (centre + radius), mean + (centre - radius));
     let alone = mean + alone;
@@ -124,21 +144,11 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
             either(last, bottom, top),
             either(last, alone, bottom),
         ],
-        directions: [
-            either_vector(last, high, lonely),
-            either_vector(last, low, high),
-            either_vector(last, lonely, low),
-        ],
+        last,
+        lonely,
+        plane,
+        over_radius: either(differ, 1.0 / radius, 0.0),
     }
-}
-
-#[inline(always)]
-fn either_vector(first: bool, a: Vec3, b: Vec3) -> Vec3 {
-    Vec3::new(
-        either(first, a.x, b.x),
-        either(first, a.y, b.y),
-        either(first, a.z, b.z),
-    )
 }
 
 /// The largest root of β³ − 3β = 2h for 0 ≤ h ≤ 1, 2 cos(arccos(h) / 3).
@@ -154,37 +164,21 @@ fn lonely_root(h: f64) -> f64 {
     root - excess(root) * over_slope
 }
 
-/// Direction of a simple principal value: the longest column of the adjugate of B − value I.
+/// Onto the direction of a simple principal value.
 #[inline(always)]
-fn lonely_direction(b: &Voigt, value: f64) -> Vec3 {
-    let rows = [
-        Vec3::new(b[0] - value, b[3], b[5]),
-        Vec3::new(b[3], b[1] - value, b[4]),
-        Vec3::new(b[5], b[4], b[2] - value),
+fn projector(b: &Voigt, value: f64) -> Voigt {
+    let (x, y, z) = (b[0] - value, b[1] - value, b[2] - value);
+    let adjugate = [
+        y * z - b[4] * b[4],
+        z * x - b[5] * b[5],
+        x * y - b[3] * b[3],
+        b[4] * b[5] - b[3] * z,
+        b[5] * b[3] - b[4] * x,
+        b[3] * b[4] - b[5] * y,
     ];
-    // Column i is vᵢ v times the product of the distances to the other values, which is positive.
-    let columns = [
-        rows[1].cross(rows[2]),
-        rows[2].cross(rows[0]),
-        rows[0].cross(rows[1]),
-    ];
-    let (x, y, z) = (columns[0].x, columns[1].y, columns[2].z);
-    let of_two = either_vector(y > x, columns[1], columns[0]);
-    let longest = either_vector(z > either(y > x, y, x), columns[2], of_two);
-    longest * (1.0 / longest.length())
-}
-
-/// Two unit vectors at right angles to the unit vector `n` and to each other (T. Duff et al.,
-/// "Building an orthonormal basis, revisited", 2017).
-#[inline(always)]
-fn complement(n: Vec3) -> (Vec3, Vec3) {
-    let sign = 1f64.copysign(n.z);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    (
-        Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
-        Vec3::new(b, sign + n.y * n.y * a, -n.y),
-    )
+    // The product of the distances to the other values.
+    let over = 1.0 / super::trace(&adjugate);
+    adjugate.map(|a| a * over)
 }
 
 #[cfg(test)]
@@ -192,18 +186,13 @@ mod tests {
     use super::*;
     use crate::Mat3;
     use crate::random::Random;
-    use crate::tensor::{from_matrix, rotate};
+    use crate::tensor::rotate;
 
-    /// Largest errors of the values, of the directions' products, and of Σ σᵢ nᵢ ⊗ nᵢ.
+    /// Largest errors of the values, of the tensor of these values, and of that of other ones.
     fn errors(values: [f64; 3], turn: &Mat3) -> [f64; 3] {
-        let [a, b, c] = values;
-        let tensor = rotate(&[a, b, c, 0.0, 0.0, 0.0], turn);
+        let turned = |v: [f64; 3]| rotate(&[v[0], v[1], v[2], 0.0, 0.0, 0.0], turn);
+        let tensor = turned(values);
         let found = principal(&tensor);
-        let n = found.directions;
-        let frame = Mat3::from_cols(n[0], n[1], n[2]);
-        let [x, y, z] = found.values;
-        let rebuilt = rotate(&[x, y, z, 0.0, 0.0, 0.0], &frame);
-        let products = from_matrix(&(frame.transpose() * frame));
         let largest = |a: &[f64], b: &[f64]| {
             a.iter()
                 .zip(b)
@@ -211,10 +200,13 @@ mod tests {
         };
         let mut sorted = values;
         sorted.sort_by(|a, b| b.total_cmp(a));
+        // What is close to each other stays so.
+        let size = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let other = |v: f64| v.min(0.3 * size) + 0.5 * v;
         [
             largest(&found.values, &sorted),
-            largest(&products, &[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
-            largest(&rebuilt, &tensor),
+            largest(&found.with(&found.values), &tensor),
+            largest(&found.with(&found.values.map(other)), &turned(values.map(other))),
         ]
     }
 
@@ -232,10 +224,10 @@ mod tests {
                 3 => v = [v[0] * close, v[1], v[2] * close * close],
                 _ => {}
             }
-            let [value, product, tensor] = errors(v.map(|x| x * scale), &random.rotation());
+            let [value, tensor, other] = errors(v.map(|x| x * scale), &random.rotation());
             assert!(value <= 4e-15 * scale, "{v:?} × {scale}: {value}");
-            assert!(product <= 2e-15, "{v:?} × {scale}: {product}");
             assert!(tensor <= 4e-15 * scale, "{v:?} × {scale}: {tensor}");
+            assert!(other <= 8e-15 * scale, "{v:?} × {scale}: {other}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! The model's update of particles side by side: the same numbers as [`MohrCoulomb::update`], bit for bit.
 
 use super::super::{State, Strained};
-use super::{MohrCoulomb, MohrCoulombState, YieldState, compose, equivalent_strain};
+use super::{MohrCoulomb, MohrCoulombState, YieldState, equivalent_strain};
 use crate::lanes::{
     Held, LANES, Lane, Simd, any, clear_rest, either, for_each_simd, get, held, larger, set,
 };
@@ -119,7 +119,7 @@ impl One {
         let elastic = model.corners.shear_function(largest, smallest) <= 0.0;
         let found = model.corners.return_without_cutoff(&principal.values);
         One {
-            stress: compose(&found.stress, &principal.directions),
+            stress: principal.with(&found.stress),
             yielding: either(elastic, 0.0, f64::from(found.yielding as u8)),
             opening: found.opening,
             odd: !ordinary,

@@ -62,7 +62,6 @@ pub use parameters::{MohrCoulombParameters, ParameterError};
 pub(super) use particle::{OPENING, STATE_FIELDS, is_separated, solid_share};
 
 use super::LinearElastic;
-use crate::Vec3;
 use crate::tensor::{self, Voigt};
 use corners::Corners;
 
@@ -179,21 +178,6 @@ fn equivalent_strain(e: &Voigt) -> f64 {
     (2.0 / 3.0 * (normal + shear)).sqrt()
 }
 
-/// σ₂ I + (σ₁ − σ₂) n₁ ⊗ n₁ + (σ₃ − σ₂) n₃ ⊗ n₃: exactly isotropic at the corners that are.
-#[inline(always)]
-fn compose(&[a, middle, c]: &[f64; 3], &[n, _, m]: &[Vec3; 3]) -> Voigt {
-    let (a, c) = (a - middle, c - middle);
-    let (p, q) = (n * a, m * c);
-    [
-        middle + (p.x * n.x + q.x * m.x),
-        middle + (p.y * n.y + q.y * m.y),
-        middle + (p.z * n.z + q.z * m.z),
-        p.x * n.y + q.x * m.y,
-        p.y * n.z + q.y * m.z,
-        p.z * n.x + q.z * m.x,
-    ]
-}
-
 impl MohrCoulomb {
     /// Checks the parameters. `elastic` must have E > 0 and −1 < ν < ½.
     pub fn new(
@@ -276,7 +260,7 @@ impl MohrCoulomb {
             return PlasticStep::elastic(*trial);
         }
         let found = self.corners.return_map(&principal.values);
-        let stress = compose(&found.stress, &principal.directions);
+        let stress = principal.with(&found.stress);
         let excess: Voigt = std::array::from_fn(|k| trial[k] - stress[k]);
         PlasticStep {
             stress,

@@ -54,6 +54,7 @@ pub struct Active {
     listed: Vec<Listed>,
     /// Tiles without those of guests.
     own_tiles: usize,
+    guest_cells: Vec<u32>,
 }
 
 /// A cell as it is found, before it has a number.
@@ -217,6 +218,7 @@ impl Active {
         let cells = listed.iter().map(|cell| (cell.first, cell.count));
         tiles.rebuild(cells, lane, |rank, place| order.put(rank, place));
         self.own_tiles = self.tiles.len();
+        self.guest_cells.clear();
     }
 
     /// Room for guests.
@@ -228,6 +230,7 @@ impl Active {
         self.is_cell.reserve(lanes);
         self.fields.reserve(lanes);
         self.ranks.reserve(lanes);
+        self.guest_cells.reserve(lanes);
     }
 
     /// Lays out more guests behind all others: cells that they are in and how many each has. `put` is told the
@@ -240,10 +243,12 @@ impl Active {
             is_cell,
             fields,
             ranks,
+            guest_cells,
             ..
         } = self;
         let lane = |pile: Option<Pile>| {
             let cell = pile.map(|pile| guests[pile.cell as usize].0 as usize);
+            guest_cells.push(cell.map_or(NONE, |c| c as u32));
             elements.push(cell.map_or(NONE, |c| elements[c]));
             let nodes = cell.map_or_else(|| cell_nodes.last(), |c| cell_nodes.get(c));
             cell_nodes.push(*nodes.expect("there is a cell before"));
@@ -264,18 +269,18 @@ impl Active {
         self.own_tiles
     }
 
-    /// The lanes of guests.
-    pub fn guest_lanes(&self) -> Range<usize> {
-        self.own_tiles * LANES..self.elements.len()
+    /// The cell of each lane of guests, or [`NONE`].
+    pub fn guest_cells(&self) -> &[u32] {
+        &self.guest_cells
     }
 
     /// For each lane of guests from a tile of theirs on one that has the same nodes and is not of guests.
     pub(super) fn guest_pairs(&self, tile: usize) -> impl Iterator<Item = usize> {
         let mut last = 0;
-        (tile * LANES..self.elements.len()).map(move |lane| {
-            let element = self.elements[lane];
-            if element != NONE {
-                last = self.cell(element as usize, 0).expect("guests are in cells");
+        let cells = &self.guest_cells[(tile - self.own_tiles) * LANES..];
+        cells.iter().map(move |&cell| {
+            if cell != NONE {
+                last = cell as usize;
             }
             last
         })

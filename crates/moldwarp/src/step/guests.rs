@@ -331,17 +331,4 @@ impl Simulation {
         cells.add_guests(active, tiles);
         true
     }
-
-    /// Adds the sums of guests to those of the cells that they are in, and keeps what only nodes need.
-    pub(super) fn count_guests(&mut self) {
-        let (active, cells) = (&self.active, &mut self.cells);
-        for guest in active.guest_lanes() {
-            if active.elements[guest] == crate::mesh::NONE {
-                continue;
-            }
-            let own = active.cell(active.elements[guest] as usize, 0);
-            let own = own.expect("guests are in cells");
-            cells.add_sums(guest, own);
-        }
-    }
 }

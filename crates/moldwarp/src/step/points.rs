@@ -115,7 +115,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             own_work(simd, &deformation, records.sum, &mut begun);
             kick.enter(simd, &mut corners, &given, nodes, &shapes);
             if stays {
-                sums.enter(&mut records);
+                sums.enter(simd, &mut records);
             }
             let cells = Cells {
                 shapes: &shapes,

@@ -7,6 +7,8 @@ use super::mass::ConsistentMass;
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, VoigtLanes, lane_of};
 use crate::mesh::Mesh;
+use crate::parallel::fold;
+use std::ops::Range;
 
 /// A node that particles touch. Forces in N, work in J.
 #[derive(Clone, Copy, Debug, Default)]
@@ -177,6 +179,13 @@ impl CellSums {
         .into_iter()
         .chain(&mut self.stress)
     }
+
+    /// The same to look at.
+    fn all(&self) -> impl Iterator<Item = &Lane> {
+        [&self.mass, &self.volume, &self.solid, &self.closed]
+            .into_iter()
+            .chain(&self.stress)
+    }
 }
 
 impl CellMedium {
@@ -185,6 +194,13 @@ impl CellMedium {
         (self.moduli.iter_mut())
             .chain(&mut self.reference)
             .chain(&mut self.shares)
+    }
+
+    /// The same to look at.
+    fn all(&self) -> impl Iterator<Item = &Lane> {
+        (self.moduli.iter())
+            .chain(&self.reference)
+            .chain(&self.shares)
     }
 }
 
@@ -278,28 +294,67 @@ impl Cells {
         }
     }
 
-    /// Moves the sums of a lane that make a cell's stress to another one.
-    pub(super) fn add_sums(&mut self, from: usize, to: usize) {
-        let ((from, a), (to, b)) = (lane_of(from), lane_of(to));
-        let (sums, guests) = self.sums.split_at_mut(from);
-        for (to, from) in sums[to].lanes().zip(guests[0].lanes()) {
-            to[b] += std::mem::replace(&mut from[a], 0.0);
-        }
-        if self.medium.is_empty() {
+    /// Moves the sums of guests that make a cell's stress to the cells that they are in.
+    pub(super) fn count_guests(&mut self, active: &Active) {
+        let own = active.own_tiles();
+        if active.guest_cells().is_empty() {
             return;
         }
-        let (medium, guests) = self.medium.split_at_mut(from);
-        for (to, from) in medium[to].lanes().zip(guests[0].lanes()) {
-            to[b] += std::mem::replace(&mut from[a], 0.0);
+        let (sums, guests) = self.sums.split_at_mut(own);
+        let medium = (!self.medium.is_empty()).then(|| self.medium.split_at_mut(own));
+        let (medium, guests_medium) = medium.unzip();
+        let (given, given_medium) = (&*guests, guests_medium.as_deref());
+        // Each thread looks through all guests for those in its cells: so these are added in their order.
+        fold((0..own, sums, medium), own.div_ceil(8), &|(
+            tiles,
+            sums,
+            mut medium,
+        ): (
+            Range<usize>,
+            &mut [CellSums],
+            Option<&mut [CellMedium]>,
+        )| {
+            for (guest, &cell) in active.guest_cells().iter().enumerate() {
+                let ((tile, to), (from_tile, from)) = (lane_of(cell as usize), lane_of(guest));
+                if !tiles.contains(&tile) {
+                    continue;
+                }
+                let tile = tile - tiles.start;
+                add_lane(sums[tile].lanes(), to, given[from_tile].all(), from);
+                let (Some(medium), Some(given)) = (&mut medium, given_medium) else {
+                    continue;
+                };
+                add_lane(medium[tile].lanes(), to, given[from_tile].all(), from);
+                let (own, guest) = (
+                    &mut medium[tile].wave_modulus,
+                    &given[from_tile].wave_modulus,
+                );
+                own[to] = own[to].max(guest[from]);
+            }
+        });
+        for guests in guests {
+            guests.lanes().for_each(|lane| *lane = ZERO);
         }
-        let (own, guest) = (&mut medium[to].wave_modulus, &guests[0].wave_modulus);
-        own[b] = own[b].max(guest[a]);
+        for guests in guests_medium.into_iter().flatten() {
+            guests.lanes().for_each(|lane| *lane = ZERO);
+        }
     }
 
     /// Σ V_p of a cell, m³.
     pub(crate) fn volume(&self, c: usize) -> f64 {
         let (tile, lane) = lane_of(c);
         self.sums[tile].volume[lane]
+    }
+}
+
+fn add_lane<'a>(
+    sums: impl Iterator<Item = &'a mut Lane>,
+    to: usize,
+    given: impl Iterator<Item = &'a Lane>,
+    from: usize,
+) {
+    for (sum, given) in sums.zip(given) {
+        sum[to] += given[from];
     }
 }
 

@@ -87,6 +87,16 @@ pub(super) struct Counted<'a> {
 }
 
 for_each_simd! {
+    /// Has nothing in any sum.
+    fn clear(sums: &mut Sums, sum: &mut CellSums) {
+        let own = (sums.momentum.iter_mut().chain(&mut sums.mass))
+            .chain(&mut sums.pairs)
+            .chain(&mut sums.squares);
+        own.chain(sum.lanes()).for_each(|lane| *lane = Lane::of(0.0));
+    }
+}
+
+for_each_simd! {
     /// Adds a particle to each cell.
     fn add(sums: &mut Sums, points: &Counted, sum: &mut CellSums) {
         for l in 0..LANES {
@@ -162,16 +172,12 @@ pub(super) struct Asked<'a> {
 impl Sums {
     /// Goes to the next cells.
     #[inline]
-    pub fn enter(&mut self, records: &mut Records) {
-        *records.sum = CellSums::default();
+    pub fn enter(&mut self, simd: Simd, records: &mut Records) {
+        clear(simd, self, records.sum);
         if let Some(medium) = &mut records.medium {
             **medium = CellMedium::default();
         }
         self.opened = false;
-        self.momentum = NO_CORNERS;
-        self.mass = [Lane::of(0.0); 4];
-        self.pairs = [Lane::of(0.0); 6];
-        self.squares = [Lane::of(0.0); 4];
     }
 
     /// Adds the particles of a slot.
@@ -410,7 +416,7 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
             let (nodes, pairs) = (active.tile_nodes(number), mass.tile_pairs(number));
             shapes.enter(asked.simd, &mut moved, nodes, &shared.places);
-            sums.enter(&mut records);
+            sums.enter(asked.simd, &mut records);
             for slot in tile.slots() {
                 fetch(
                     asked.simd,

@@ -21,7 +21,7 @@ const FILLED: f64 = 0.6;
 
 pub(super) fn run(sim: &mut Simulation, before: f64) {
     sums::run(sim, before);
-    sim.count_guests();
+    sim.cells.count_guests(&sim.active);
     sum_nodes(sim);
     sim.profile.lap(Part::ToNodes);
     cell_forces(sim, before);

@@ -206,7 +206,10 @@ mod tests {
         [
             largest(&found.values, &sorted),
             largest(&found.with(&found.values), &tensor),
-            largest(&found.with(&found.values.map(other)), &turned(values.map(other))),
+            largest(
+                &found.with(&found.values.map(other)),
+                &turned(values.map(other)),
+            ),
         ]
     }
 

@@ -317,7 +317,7 @@ impl<const N: usize> Split for Columns<'_, N> {
     }
 }
 
-/// 1 in lanes that hold a particle, 0 in the rest of them.
+/// Greater than zero in lanes that hold a particle, 0 in the rest of them.
 pub type Held = Lane;
 
 /// The first lanes hold one. (Numbers to compare with, since compilers make little of numbers of lanes.)

@@ -198,10 +198,11 @@ impl Simulation {
     /// Numbers cells and nodes as they were: particles are in order already, but for guests.
     fn number(&mut self, guests: Known) -> Result<(), Broken> {
         let (elements, count) = (self.plan.mesh.tets.len(), self.particles.len());
-        let [from, _, _, filed] = &guests;
+        let [from, into, _, filed] = &guests;
         let homes: Vec<usize> = homes(from, count).collect();
         check("guests", homes.len() == filed.len())?;
-        check("guests", filed.iter().all(|&e| (e as usize) < elements))?;
+        let known = |&e: &u32| (e as usize) < elements;
+        check("guests", filed.iter().chain(into).all(known))?;
         // Those that are guests lie under other elements than their own.
         let own = &mut self.particles.element;
         let replaced = homes.iter().zip(filed);

@@ -94,7 +94,7 @@ impl Guests {
         homes(&self.from, particles)
     }
 
-    /// Has guests again as they were known, that are at home, of so many particles in order. False if that cannot be.
+    /// Has guests again as they were known, of these particles, which are at home and in order. False if that cannot be.
     pub(crate) fn expect(
         &mut self,
         [from, elements, ends, _]: &Known,
@@ -104,12 +104,17 @@ impl Guests {
     ) -> bool {
         let mut first = 0;
         for &end in ends {
-            let Some(batch) = from.get(first..end as usize) else {
+            let batch = first..end as usize;
+            let (Some(from), Some(elements)) = (from.get(batch.clone()), elements.get(batch))
+            else {
                 return false;
             };
+            if from.iter().any(|&p| p as usize >= particles.len() + first) {
+                return false;
+            }
             self.found.clear();
-            let elements = elements[first..].iter().copied();
-            self.found.extend(elements.zip(batch.iter().copied()));
+            let both = elements.iter().zip(from);
+            self.found.extend(both.map(|(&e, &p)| (e, p)));
             self.found.sort_unstable();
             if !self.lay_out(active, particles.len()) {
                 return false;
@@ -156,7 +161,7 @@ impl Guests {
 
     /// Finds those that have crossed. False if there would be too many guests.
     fn find(&mut self, particles: &Particles, filed: &[u32]) -> bool {
-        let most = (particles.len() - self.twice()) / FEW - self.from.len();
+        let most = ((particles.len() - self.twice()) / FEW).saturating_sub(self.from.len());
         self.found.clear();
         let (now, filed) = (particles.element.chunks(64), filed.chunks(64));
         for ((now, filed), first) in now.zip(filed).zip((0..).step_by(64)) {

@@ -68,6 +68,9 @@ impl Motion {
         position.load(&mut self.position, start);
         load_one(&mut self.mass, mass, 0);
         clear_rest(&mut self.mass, held);
+        let alive = self.mass;
+        // What guests leave behind must not go farther and farther from its cell.
+        self.position.iter_mut().for_each(|x| clear_rest(x, &alive));
     }
 
     /// Moves a particle.

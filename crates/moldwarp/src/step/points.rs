@@ -14,8 +14,8 @@ use super::sums::{self, Arrays as SumArrays, Asked, Counted, Given as Sharing, S
 use super::to_particles::{Given, Kick, Pending};
 use crate::Vec3;
 use crate::lanes::{
-    self, AHEAD, ByTile, Columns, Held, LANES, Lane, alike, for_each_simd, get, held, prefetch,
-    prefetch_bodies, set,
+    self, AHEAD, ByTile, Columns, Held, LANES, Lane, alike, clear_rest, for_each_simd, get, held,
+    prefetch, prefetch_bodies, set,
 };
 use crate::parallel::Smallest;
 use crate::particles::Particles;
@@ -241,6 +241,7 @@ for_each_simd! {
     ) {
         motion.fetch(&arrays.position, mass, start, held);
         arrays.velocity.load(speeds, start);
+        speeds.iter_mut().for_each(|v| clear_rest(v, &motion.mass));
         points.fetch(&arrays.stressed, start, held);
         if let (kick, Some(pending)) = kick {
             for l in 0..LANES {

@@ -4,7 +4,9 @@
 //! height a r₀, whatever the grains, a run-out (r∞ − r₀)/r₀ of 1.24 a for a < 1.7 and 1.6 √a above.
 //! A sector of 20° with one cell around and n elements over r₀ is computed: φ = 30°, no cohesion, no
 //! dilation, the base held, nothing calibrated and nothing damped. Gravity is there from the start.
-//! Run-out is the radius that 99 % of the mass lies within; the largest of a grain stands beside it.
+//! Run-out is the radius that 99 % of the mass lies within; the largest of a grain stands beside it. On coarse meshes few
+//! grains make the front, and a change of the last digits moves it by several per cent: there the figure is the mean of runs
+//! whose gravity differs by 1e-13.
 
 use crate::setup;
 use crate::{Fidelity, Plot, Report, Table};
@@ -14,6 +16,8 @@ use moldwarp::{Plan, Simulation, Vec3};
 
 const GRAVITY: f64 = 9.81;
 const DENSITY: f64 = 1600.0;
+/// From one run of the same column to the next.
+const PERTURBATION: f64 = 1e-13;
 /// Width of the rings of a deposit's profile, m.
 const RING: f64 = 0.05;
 
@@ -22,8 +26,8 @@ fn measured(a: f64) -> f64 {
     if a < 1.7 { 1.24 * a } else { 1.6 * a.sqrt() }
 }
 
-/// A column of radius 1 m and height `a` in a mesh with room, run to `end`.
-fn plan(a: f64, n: usize, end: f64) -> Plan {
+/// A column of radius 1 m and height `a` in a mesh with room, run to `end`, for the `run`-th time.
+fn plan(a: f64, n: usize, end: f64, run: u8) -> Plan {
     let rings = ((1.0 + 1.5 * measured(a)) * n as f64).ceil();
     let layers = ((a + 0.25) * n as f64).ceil();
     let sector = CylinderSector {
@@ -49,7 +53,8 @@ fn plan(a: f64, n: usize, end: f64) -> Plan {
         end: Vec3::new(0.0, 0.0, a),
         radius: 1.0,
     });
-    plan.gravity = Vec3::new(0.0, 0.0, -GRAVITY);
+    let gravity = GRAVITY * (1.0 + f64::from(run) * PERTURBATION);
+    plan.gravity = Vec3::new(0.0, 0.0, -gravity);
     setup::bound(&mut plan, &["z-min"], setup::FIXED);
     let sides = ["theta-min", "theta-max", "r-max"];
     setup::bound(&mut plan, &sides, BoundaryKind::Roller);
@@ -148,7 +153,7 @@ pub fn run(fidelity: Fidelity) -> Report {
             let mut last = None;
             let mut kinetic = (0.0f64, 0.0);
             let mut next = 0.0;
-            let balance = setup::run(plan(a, n, 6.0 * unit), |s| {
+            let balance = setup::run(plan(a, n, 6.0 * unit, 0), |s| {
                 let grid = s.energies().kinetic_grid;
                 kinetic = (kinetic.0.max(grid), grid);
                 if s.time() >= next || s.finished() {
@@ -160,7 +165,16 @@ pub fn run(fidelity: Fidelity) -> Report {
             });
             let (d, particles) = last.expect("a run has an end");
             let [run_out, farthest] = d.radius.map(|r| r - 1.0);
-            let difference = run_out / measured(a) - 1.0;
+            let difference = |radius: f64| (radius - 1.0) / measured(a) - 1.0;
+            let mut differences = vec![difference(d.radius[0])];
+            for again in 1..fidelity.pick(8, 1) {
+                setup::run(plan(a, n, 6.0 * unit, again), |s| {
+                    if s.finished() {
+                        differences.push(difference(deposit(s).radius[0]));
+                    }
+                });
+            }
+            let difference = differences.iter().sum::<f64>() / differences.len() as f64;
             report.table.row(&[
                 &a,
                 &n,

@@ -268,11 +268,12 @@ impl Simulation {
         let mesh = &self.plan.mesh;
         self.order
             .find(&self.particles, mesh.tets.len(), &self.fields);
+        let margin = self.may_have_guests();
         let grid = Grid {
             mesh,
             walls: &self.walls,
             fields: &self.fields,
-            margin: self.may_have_guests(),
+            margin,
         };
         self.guests.clear();
         self.active.rebuild(&grid, &mut self.order);
@@ -287,11 +288,15 @@ impl Simulation {
             ..
         } = self;
         let active = &*active;
+        let guests = match margin {
+            true => Guests::most_tiles(particles.len(), active.own_tiles()),
+            false => 0,
+        };
         // Particles move while cells learn of their nodes: the latter takes one thread.
         rayon::join(
             || order.settle(particles),
             || {
-                cells.renew(active);
+                cells.renew(active, guests);
                 nodes.clear();
                 nodes.resize(active.nodes.len(), Node::default());
                 for (&drift, &key) in self.spare_drifts.iter().zip(&self.spare_numbers) {
@@ -310,11 +315,10 @@ impl Simulation {
         }
         self.probes.reorder(destination);
         self.contacts.find(&self.active);
-        if self.may_have_guests() {
-            let tiles = Guests::most_tiles(self.particles.len(), self.active.own_tiles());
+        if margin {
             self.guests.make_room(&mut self.particles, &mut self.order);
-            self.active.make_room(tiles);
-            self.cells.make_room(tiles, self.nodes.len());
+            self.active.make_room(guests);
+            self.cells.make_room(guests);
         }
     }
 }

@@ -11,6 +11,7 @@
 
 use super::corners::{Corners, Quad, add_alike, add_corners};
 use super::mass::ConsistentMass;
+use super::state::room_for;
 use crate::lanes::{LANES, Lane, Simd};
 use crate::parallel::{self, Split, Sum};
 use std::ops::{AddAssign, Range};
@@ -85,8 +86,8 @@ impl Window {
 }
 
 impl Portions {
-    /// Of cells with these nodes, tile after tile; guests are not there.
-    pub fn renew(&mut self, cell_nodes: &[[u32; 4]], mass: &ConsistentMass) {
+    /// Of cells with these nodes, tile after tile; guests are not there, but have room if there may be any.
+    pub fn renew(&mut self, cell_nodes: &[[u32; 4]], mass: &ConsistentMass, guests: bool) {
         let own = cell_nodes.len() / LANES;
         let tiles = own.div_ceil(PORTIONS).max(LEAST);
         self.cut = Cut { tiles, own };
@@ -100,18 +101,21 @@ impl Portions {
                 last = last.max(n);
             }
             let nodes = first as usize..last as usize + 1;
-            self.pairs.add(mass.pairs_of(nodes.clone()), 1);
-            self.nodes.add(nodes, MOST);
+            self.pairs.add(mass.pairs_of(nodes.clone()));
+            self.nodes.add(nodes);
         }
-        self.nodes.own = self.nodes.windows.len();
-        self.pairs.own = self.pairs.windows.len();
+        let all = usize::from(guests);
+        self.nodes.begin(MOST, all * mass.diagonal.len());
+        self.pairs.begin(1, all * mass.values.len());
     }
 
     /// There are guests, or more of them, and so many tiles. What has been given stays.
     pub fn add_guests(&mut self, tiles: usize, mass: &ConsistentMass) {
         if self.count == self.cut.own {
-            self.nodes.add(0..mass.diagonal.len(), MOST);
-            self.pairs.add(0..mass.values.len(), 1);
+            self.nodes.add(0..mass.diagonal.len());
+            self.pairs.add(0..mass.values.len());
+            self.nodes.resize(MOST);
+            self.pairs.resize(1);
         }
         self.count = tiles;
     }
@@ -119,12 +123,6 @@ impl Portions {
     /// How tiles are cut.
     pub fn cut(&self) -> Cut {
         self.cut
-    }
-
-    /// Room for the portion of guests, of so many nodes and pairs.
-    pub fn make_room(&mut self, nodes: usize, pairs: usize) {
-        self.nodes.make_room(nodes * MOST);
-        self.pairs.make_room(pairs);
     }
 
     /// To be split at portions, with other things kept by tile: what nodes are given N quads of.
@@ -151,20 +149,30 @@ impl<T: Copy + Default> Collected<T> {
         self.windows.clear();
     }
 
-    fn add(&mut self, items: Range<usize>, most: usize) {
-        let before = self.windows.last().map_or(0, |w| w.before + w.count);
-        let (first, count) = (items.start, items.len());
+    fn add(&mut self, items: Range<usize>) {
         self.windows.push(Window {
-            first,
-            count,
-            before,
+            first: items.start,
+            count: items.len(),
+            before: self.count(),
         });
-        self.given.resize((before + count) * most, T::default());
     }
 
-    fn make_room(&mut self, items: usize) {
+    /// Items of all windows.
+    fn count(&self) -> usize {
+        self.windows.last().map_or(0, |w| w.before + w.count)
+    }
+
+    /// All windows are there but that of guests, which may have so many items. An item collects at most `most`.
+    fn begin(&mut self, most: usize, guests: usize) {
+        self.own = self.windows.len();
         self.windows.reserve(1);
-        self.given.reserve(items);
+        let room = (self.count() + guests) * most;
+        room_for(&mut self.given, room);
+        self.resize(most);
+    }
+
+    fn resize(&mut self, most: usize) {
+        self.given.resize(self.count() * most, T::default());
     }
 
     fn shares<const N: usize>(&mut self, cut: Cut, count: usize) -> Shares<'_, T, N> {
@@ -341,7 +349,7 @@ mod tests {
         let (own, late) = (tiles - 11, tiles - 4);
         let mut mass = ConsistentMass::default();
         mass.renew(&cells, cells.len() + 3);
-        portions.renew(&cells[..own * LANES], &mass);
+        portions.renew(&cells[..own * LANES], &mass, true);
         portions.add_guests(late, &mass);
         let cut = portions.cut();
         assert!(own.div_ceil(cut.tiles) <= PORTIONS && cut.tiles >= LEAST);

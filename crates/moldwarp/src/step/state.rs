@@ -248,11 +248,14 @@ impl Default for CellForce {
 }
 
 impl Cells {
-    /// Of these cells.
-    pub(crate) fn renew(&mut self, active: &Active) {
+    /// Of these cells, with room for so many tiles of guests.
+    pub(crate) fn renew(&mut self, active: &Active, guests: usize) {
+        let room = active.tiles.len() + guests;
+        room_for(&mut self.sums, room);
+        room_for(&mut self.fills, room);
         self.resize(active);
         self.mass.renew(&active.cell_nodes, active.nodes.len());
-        self.portions.renew(&active.cell_nodes, &self.mass);
+        (self.portions).renew(&active.cell_nodes, &self.mass, guests > 0);
         self.summed = Summed::Nothing;
     }
 
@@ -274,14 +277,11 @@ impl Cells {
         keep(&mut self.forces, kept, &self.sums);
     }
 
-    /// Room for guests.
-    pub(crate) fn make_room(&mut self, tiles: usize, nodes: usize) {
-        self.sums.reserve(tiles);
-        self.fills.reserve(tiles);
+    /// Room for guests where [`Cells::renew`] has not made it.
+    pub(crate) fn make_room(&mut self, tiles: usize) {
         self.keep_medium(!self.medium.is_empty());
         self.keep_forces(!self.forces.is_empty());
         self.mass.make_room(tiles * LANES);
-        self.portions.make_room(nodes, self.mass.values.len());
     }
 
     /// The same after guests have come, in the tiles from this one on.
@@ -355,6 +355,15 @@ fn add_lane<'a>(
 ) {
     for (sum, given) in sums.zip(given) {
         sum[to] += given[from];
+    }
+}
+
+/// Room for so many, and some more for next time. What there was is not moved there: it takes as much memory again, and
+/// is found anew.
+pub(super) fn room_for<T>(records: &mut Vec<T>, room: usize) {
+    if records.capacity() < room {
+        *records = Vec::new();
+        *records = Vec::with_capacity(room + room / 8);
     }
 }
 

@@ -340,10 +340,15 @@ static HELD: [Held; LANES + 1] = {
     held
 };
 
-/// Has zero in lanes that hold nothing.
+/// Has zero in lanes that hold nothing. (As what is new: part of a lane that is written has to get to the cache before all
+/// of it can be read, which takes twice as long.)
 #[inline(always)]
-pub fn clear_rest(lane: &mut Lane, held: &Held) {
-    (0..LANES).for_each(|l| lane[l] = either(held[l] > 0.0, lane[l], 0.0));
+pub fn only(held: &Held, lane: &Lane) -> Lane {
+    let mut only = Lane::of(0.0);
+    for l in 0..LANES {
+        only[l] = either(held[l] > 0.0, lane[l], 0.0);
+    }
+    only
 }
 
 /// The number of each component in a lane.

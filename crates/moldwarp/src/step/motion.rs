@@ -3,13 +3,13 @@
 
 use super::shapes::Shapes;
 use super::strain::Deformation;
+use super::sums::Carried;
 use crate::Mat3;
 use crate::Vec3;
 use crate::boundary::Outflow;
 use crate::contact::{Contacts, Fields};
 use crate::lanes::{
-    Columns, Held, LANES, Lane, any, clear_rest, either, for_each_simd, get, load, load_one, set,
-    sum,
+    Columns, Held, LANES, Lane, any, either, for_each_simd, get, load, load_one, only, set, sum,
 };
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{First, Sum};
@@ -18,9 +18,6 @@ use std::ops::Range;
 /// Cells and particles side by side.
 pub(super) struct Motion {
     pub position: [Lane; 3],
-    pub mass: Lane,
-    /// N_i where the particle has come to.
-    pub shapes: [Lane; 4],
     /// Work of gravity, J.
     work: Lane,
     /// 1 where a particle has left its element as it was.
@@ -32,8 +29,6 @@ impl Default for Motion {
         let vector = [Lane::of(0.0); 3];
         Motion {
             position: vector,
-            mass: Lane::of(0.0),
-            shapes: [Lane::of(0.0); 4],
             work: Lane::of(0.0),
             left: Lane::of(0.0),
         }
@@ -64,13 +59,22 @@ for_each_simd! {
 impl Motion {
     /// Fetches particles.
     #[inline(always)]
-    pub fn fetch(&mut self, position: &Columns<3>, mass: &[f64], start: usize, held: &Held) {
-        position.load(&mut self.position, start);
-        load_one(&mut self.mass, mass, 0);
-        clear_rest(&mut self.mass, held);
-        let alive = self.mass;
+    pub fn fetch(
+        &mut self,
+        position: &Columns<3>,
+        carried: &mut Carried,
+        mass: &[f64],
+        start: usize,
+        held: &Held,
+    ) {
+        let (mut own, mut x) = (Lane::of(0.0), [Lane::of(0.0); 3]);
+        load_one(&mut own, mass, 0);
+        position.load(&mut x, start);
+        carried.mass = only(held, &own);
         // What guests leave behind must not go farther and farther from its cell.
-        self.position.iter_mut().for_each(|x| clear_rest(x, &alive));
+        for k in 0..3 {
+            self.position[k] = only(&carried.mass, &x[k]);
+        }
     }
 
     /// Moves a particle.
@@ -80,6 +84,7 @@ impl Motion {
         shapes: &Shapes,
         deformation: &Deformation,
         gravity: Vec3,
+        carried: &mut Carried,
         l: usize,
     ) {
         let mut x = Vec3::from_array(get(&self.position, l));
@@ -88,16 +93,16 @@ impl Motion {
         let step = Vec3::from_array(get(&deformation.origin, l)) + gradient * shapes.arm(l, x);
         x += step;
         set(&mut self.position, l, x.to_array());
-        self.work[l] += self.mass[l] * gravity.dot(step);
+        self.work[l] += carried.mass[l] * gravity.dot(step);
         let n = shapes.at(l, x);
-        set(&mut self.shapes, l, n);
+        set(&mut carried.shapes, l, n);
         // Where a guest comes from lies a particle without mass.
-        let stays = is_inside(n) | (self.mass[l] == 0.0);
+        let stays = is_inside(n) | (carried.mass[l] == 0.0);
         self.left[l] = either(stays, 0.0, 1.0);
     }
 
-    /// Finds the elements of the particles of a slot that have left theirs. Those that have come to another one have
-    /// no mass here any more, and `gone` is told their lanes.
+    /// Finds the elements of the particles of a slot that have left theirs. Those that have come to another one are
+    /// not here any more, and `gone` is told their lanes.
     #[inline]
     pub fn search(
         &mut self,
@@ -113,7 +118,6 @@ impl Motion {
         for (l, p) in slot.enumerate() {
             let x = Vec3::from_array(get(&self.position, l));
             if self.left[l] != 0.0 && search.walk(p, x, &mut elements[l], crossing) {
-                self.mass[l] = 0.0;
                 gone(l);
             }
         }

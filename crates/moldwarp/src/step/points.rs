@@ -10,11 +10,11 @@ use super::shapes::Shapes;
 use super::state::Summed;
 use super::strain::{Deformation, own_work};
 use super::stress::{Arrays as Stressed, Booked, Points, Stresses};
-use super::sums::{self, Arrays as SumArrays, Asked, Counted, Given as Sharing, Sums};
+use super::sums::{self, Arrays as SumArrays, Asked, Carried, Counted, Given as Sharing, Sums};
 use super::to_particles::{Given, Kick, Pending};
 use crate::Vec3;
 use crate::lanes::{
-    self, AHEAD, ByTile, Columns, Held, LANES, Lane, alike, clear_rest, for_each_simd, get, held,
+    self, AHEAD, ByTile, Columns, Held, LANES, Lane, alike, for_each_simd, get, held, only,
     prefetch, prefetch_bodies, set,
 };
 use crate::parallel::Smallest;
@@ -103,7 +103,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut shapes, mut sums) = (Shapes::default(), Sums::default());
         let mut corners = NO_CORNERS;
         let mut giving = (to_nodes.begin(), to_pairs.begin());
-        let (mut kick, mut speeds) = (Kick::default(), [Lane::of(0.0); 3]);
+        let mut kick = Kick::default();
         let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
         // Work of the particles' stresses in the halves of the drift.
         let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
@@ -115,7 +115,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             own_work(simd, &deformation, records.sum, &mut begun);
             kick.enter(simd, &mut corners, &given, nodes, &shapes);
             if stays {
-                sums.enter(simd, &mut records);
+                sums.enter(&mut records);
             }
             let cells = Cells {
                 shapes: &shapes,
@@ -132,7 +132,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 begin(
                     simd,
                     &mut motion,
-                    &mut speeds,
+                    sums.next(),
                     &mut stress.points,
                     &arrays,
                     &mass[slot.start..],
@@ -145,7 +145,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 end(
                     simd,
                     &mut motion,
-                    &speeds,
+                    sums.next(),
                     &mut stress.points,
                     &mut stress.booked,
                     &mut kick,
@@ -155,19 +155,18 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 stress.book_plastic();
                 (stress.points).keep(simd, &mut arrays.stressed, start, lanes);
                 (arrays.position).store(simd, &motion.position, start, lanes);
-                arrays.velocity.store(simd, &speeds, start, lanes);
+                (arrays.velocity).store(simd, &sums.next().velocity, start, lanes);
                 if !stays {
                     continue;
                 }
                 // What has come to another element counts there, as a guest.
                 let elements = &mut elements[start..];
-                let volume = &mut stress.points.volume;
-                motion.search(&search, slot, elements, &mut crossing, |l| volume[l] = 0.0);
+                let (mass, volume) = (&mut sums.next().mass, &mut stress.points.volume);
+                motion.search(&search, slot, elements, &mut crossing, |l| {
+                    (mass[l], volume[l]) = (0.0, 0.0);
+                });
                 let points = Counted {
-                    shapes: &motion.shapes,
                     position: &motion.position,
-                    velocity: &speeds,
-                    mass: &motion.mass,
                     volume: &stress.points.volume,
                     stress: &stress.points.increment.stress,
                     state: &stress.points.increment.state,
@@ -230,7 +229,7 @@ for_each_simd! {
     /// Fetches the particles of a slot, gives them what they have not received yet, and turns their stresses.
     fn begin(
         motion: &mut Motion,
-        speeds: &mut [Lane; 3],
+        carried: &mut Carried,
         points: &mut Points,
         arrays: &Own,
         mass: &[f64],
@@ -239,15 +238,18 @@ for_each_simd! {
         start: usize,
         held: &Held,
     ) {
-        motion.fetch(&arrays.position, mass, start, held);
-        arrays.velocity.load(speeds, start);
-        speeds.iter_mut().for_each(|v| clear_rest(v, &motion.mass));
+        motion.fetch(&arrays.position, carried, mass, start, held);
+        let mut v = [Lane::of(0.0); 3];
+        arrays.velocity.load(&mut v, start);
+        for k in 0..3 {
+            carried.velocity[k] = only(&carried.mass, &v[k]);
+        }
         points.fetch(&arrays.stressed, start, held);
         if let (kick, Some(pending)) = kick {
             for l in 0..LANES {
                 let arm = cells.shapes.arm(l, Vec3::from_array(get(&motion.position, l)));
-                let v = kick.receive(l, arm, Vec3::from_array(get(speeds, l)), pending);
-                set(speeds, l, v.to_array());
+                let v = kick.receive(l, arm, Vec3::from_array(get(&carried.velocity, l)), pending);
+                set(&mut carried.velocity, l, v.to_array());
             }
         }
         for l in 0..LANES {
@@ -260,7 +262,7 @@ for_each_simd! {
     /// Moves particles that have their new stresses.
     fn end(
         motion: &mut Motion,
-        speeds: &[Lane; 3],
+        carried: &mut Carried,
         points: &mut Points,
         booked: &mut Booked,
         kick: &mut Kick,
@@ -269,8 +271,8 @@ for_each_simd! {
     ) {
         for l in 0..LANES {
             points.book(booked, l);
-            kick.count(l, motion.mass[l], Vec3::from_array(get(speeds, l)));
-            motion.go_along(cells.shapes, cells.deformation, gravity, l);
+            kick.count(l, carried.mass[l], Vec3::from_array(get(&carried.velocity, l)));
+            motion.go_along(cells.shapes, cells.deformation, gravity, carried, l);
         }
     }
 }

@@ -8,7 +8,7 @@ pub(super) use external::ask;
 use super::strain::{Deformation, growth};
 use crate::Mat3;
 use crate::lanes::{
-    self, Columns, Held, LANES, Lane, Simd, any, clear_rest, either, for_each_simd, get, set,
+    self, Columns, Held, LANES, Lane, Simd, any, either, for_each_simd, get, only, set,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
 use crate::parallel::{Smallest, Sum};
@@ -164,8 +164,9 @@ impl Points {
     pub fn fetch(&mut self, (stresses, states, volumes): &Arrays, start: usize, held: &Held) {
         stresses.load(&mut self.increment.before, start);
         states.load(&mut self.increment.state, start);
-        volumes.load(std::array::from_mut(&mut self.volume), start);
-        clear_rest(&mut self.volume, held);
+        let mut volume = [Lane::of(0.0)];
+        volumes.load(&mut volume, start);
+        self.volume = only(held, &volume[0]);
     }
 
     /// Turns a stress with its cell.

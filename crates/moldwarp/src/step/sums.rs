@@ -11,8 +11,8 @@ use super::state::Summed;
 use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference, strain};
 use crate::Vec3;
 use crate::lanes::{
-    self, ByTile, Contents, Held, LANES, Lane, Simd, VoigtLanes, alike, any, clear_rest,
-    for_each_simd, get, held, load, load_one, set,
+    self, ByTile, Contents, Held, LANES, Lane, Simd, VoigtLanes, alike, any, for_each_simd, get,
+    held, load, load_one, only, set,
 };
 use crate::material::STATE_SIZE;
 use crate::parallel::Split;
@@ -21,8 +21,16 @@ use crate::plan::Plan;
 use crate::simulation::Simulation;
 use crate::tensor;
 
+/// Slots that are added up at a time, their sums in registers.
+const SLOTS: usize = 4;
+
 /// What the sums of cells side by side are made of, beside what their records have.
 pub(super) struct Sums {
+    /// Slots that have not been added up yet, and how many.
+    slots: [Carried; SLOTS],
+    filled: usize,
+    /// Whether none has been in these cells.
+    empty: bool,
     /// Shares of the volume that have not opened, and that are not separated.
     shares: [Lane; 2],
     /// Whether these are all one.
@@ -45,6 +53,9 @@ pub(super) struct Sums {
 impl Default for Sums {
     fn default() -> Sums {
         Sums {
+            slots: std::array::from_fn(|_| Carried::default()),
+            filled: 0,
+            empty: true,
             shares: [Lane::of(1.0); 2],
             closed: true,
             opened: false,
@@ -73,46 +84,83 @@ pub(super) type Given<'a> = (Shares<'a, Quad, 2>, Shares<'a, f64, 1>);
 /// The same of one portion.
 pub(super) type Giving<'a> = (Share<'a, Quad, 2>, Share<'a, f64, 1>);
 
-/// Particles side by side. What counts for nothing has no mass and no volume.
+/// What particles of a slot carry to their nodes. What counts for nothing has no mass.
+pub(super) struct Carried {
+    /// N_i.
+    pub shapes: [Lane; 4],
+    pub velocity: [Lane; 3],
+    pub mass: Lane,
+}
+
+impl Default for Carried {
+    fn default() -> Carried {
+        Carried {
+            shapes: [Lane::of(0.0); 4],
+            velocity: [Lane::of(0.0); 3],
+            mass: Lane::of(0.0),
+        }
+    }
+}
+
+/// The rest that counts of the same particles. What counts for nothing has no volume.
 #[derive(Clone, Copy)]
 pub(super) struct Counted<'a> {
-    /// N_i.
-    pub shapes: &'a [Lane; 4],
     pub position: &'a [Lane; 3],
-    pub velocity: &'a [Lane; 3],
-    pub mass: &'a Lane,
     pub volume: &'a Lane,
     pub stress: &'a VoigtLanes,
     pub state: &'a [Lane; STATE_SIZE],
 }
 
 for_each_simd! {
-    /// Has nothing in any sum.
-    fn clear(sums: &mut Sums, sum: &mut CellSums) {
-        let own = (sums.momentum.iter_mut().chain(&mut sums.mass))
-            .chain(&mut sums.pairs)
-            .chain(&mut sums.squares);
-        own.chain(sum.lanes()).for_each(|lane| *lane = Lane::of(0.0));
+    /// Adds slots to Σ m_p v_p N_i and Σ m_p N_i, from nothing on if they are the first.
+    fn add_momenta(momentum: &mut Corners, mass: &mut [Lane; 4], slots: &[Carried], first: bool) {
+        let (mut sums, mut masses) = (NO_CORNERS, [Lane::of(0.0); 4]);
+        if !first {
+            (sums, masses) = (*momentum, *mass);
+        }
+        for slot in slots {
+            for l in 0..LANES {
+                let (m, v) = (slot.mass[l], Vec3::from_array(get(&slot.velocity, l)));
+                let shares = get(&slot.shapes, l).map(|n| n * m);
+                for i in 0..4 {
+                    masses[i][l] += shares[i];
+                    let momentum = corner(&sums, l, i) + v * shares[i];
+                    set_corner(&mut sums, l, i, momentum);
+                }
+            }
+        }
+        (*momentum, *mass) = (sums, masses);
     }
 }
 
 for_each_simd! {
-    /// Adds a particle to each cell.
-    fn add(sums: &mut Sums, points: &Counted, sum: &mut CellSums) {
+    /// The same for Σ m_p N_i N_j and Σ m_p N_i².
+    fn add_products(pairs: &mut [Lane; 6], squares: &mut [Lane; 4], slots: &[Carried], first: bool) {
+        let (mut products, mut own) = ([Lane::of(0.0); 6], [Lane::of(0.0); 4]);
+        if !first {
+            (products, own) = (*pairs, *squares);
+        }
+        for slot in slots {
+            for l in 0..LANES {
+                let (n, m) = (get(&slot.shapes, l), slot.mass[l]);
+                let shares = n.map(|n| n * m);
+                for i in 0..4 {
+                    own[i][l] += n[i] * shares[i];
+                }
+                for k in 0..6 {
+                    let (i, j) = PAIRS[k];
+                    products[k][l] += n[i] * shares[j];
+                }
+            }
+        }
+        (*pairs, *squares) = (products, own);
+    }
+}
+
+for_each_simd! {
+    /// Adds particles to Σ σ_p V_p and Σ V_p.
+    fn add_stresses(points: &Counted, sum: &mut CellSums) {
         for l in 0..LANES {
-            let n = get(points.shapes, l);
-            let (m, v) = (points.mass[l], Vec3::from_array(get(points.velocity, l)));
-            let shares = n.map(|n| n * m);
-            for i in 0..4 {
-                sums.mass[i][l] += shares[i];
-                let momentum = corner(&sums.momentum, l, i) + v * shares[i];
-                set_corner(&mut sums.momentum, l, i, momentum);
-                sums.squares[i][l] += n[i] * shares[i];
-            }
-            for k in 0..6 {
-                let (i, j) = PAIRS[k];
-                sums.pairs[k][l] += n[i] * shares[j];
-            }
             let volume = points.volume[l];
             for k in 0..6 {
                 sum.stress[k][l] += points.stress[k][l] * volume;
@@ -134,14 +182,20 @@ for_each_simd! {
 
 for_each_simd! {
     /// Adds what it is made of.
-    fn add_medium(sums: &Sums, points: &Counted, medium: &mut CellMedium, lanes: usize) {
+    fn add_medium(
+        sums: &Sums,
+        carried: &Carried,
+        volume: &Lane,
+        medium: &mut CellMedium,
+        lanes: usize,
+    ) {
         for l in 0..LANES {
-            let volume = points.volume[l];
+            let volume = volume[l];
             for k in 0..2 {
                 medium.moduli[k][l] += volume * sums.elasticity[k][l];
             }
             for i in 0..4 {
-                medium.shares[i][l] += points.shapes[i][l] * points.mass[l];
+                medium.shares[i][l] += carried.shapes[i][l] * carried.mass[l];
             }
         }
         for l in 0..lanes {
@@ -172,15 +226,21 @@ pub(super) struct Asked<'a> {
 impl Sums {
     /// Goes to the next cells.
     #[inline]
-    pub fn enter(&mut self, simd: Simd, records: &mut Records) {
-        clear(simd, self, records.sum);
+    pub fn enter(&mut self, records: &mut Records) {
+        *records.sum = CellSums::default();
         if let Some(medium) = &mut records.medium {
             **medium = CellMedium::default();
         }
-        self.opened = false;
+        (self.empty, self.opened) = (true, false);
     }
 
-    /// Adds the particles of a slot.
+    /// Where what comes next is put.
+    #[inline]
+    pub fn next(&mut self) -> &mut Carried {
+        &mut self.slots[self.filled]
+    }
+
+    /// Adds the particles of a slot, of which [`Sums::next`] has what they carry.
     #[inline]
     pub fn add(
         &mut self,
@@ -196,21 +256,39 @@ impl Sums {
             self.opened = true;
             (sum.solid, sum.closed) = (sum.volume, sum.volume);
         }
-        add(asked.simd, self, points, sum);
+        add_stresses(asked.simd, points, sum);
         if self.opened {
             add_closed(asked.simd, self, points, sum);
         }
-        let Some(medium) = &mut records.medium else {
-            return;
-        };
-        add_medium(asked.simd, self, points, medium, bodies.len());
-        let Some(reference) = asked.reference else {
-            return;
-        };
-        for (l, &body) in bodies.iter().enumerate() {
-            let x = Vec3::from_array(get(points.position, l));
-            reference.add(medium, l, usize::from(body), x, points.volume[l]);
+        if let Some(medium) = &mut records.medium {
+            let carried = &self.slots[self.filled];
+            add_medium(
+                asked.simd,
+                self,
+                carried,
+                points.volume,
+                medium,
+                bodies.len(),
+            );
+            for (l, &body) in bodies.iter().enumerate() {
+                let Some(reference) = asked.reference else {
+                    break;
+                };
+                let x = Vec3::from_array(get(points.position, l));
+                reference.add(medium, l, usize::from(body), x, points.volume[l]);
+            }
         }
+        self.filled += 1;
+        if self.filled == SLOTS {
+            self.add_up(asked.simd);
+        }
+    }
+
+    fn add_up(&mut self, simd: Simd) {
+        let slots = &self.slots[..self.filled];
+        add_momenta(simd, &mut self.momentum, &mut self.mass, slots, self.empty);
+        add_products(simd, &mut self.pairs, &mut self.squares, slots, self.empty);
+        (self.filled, self.empty) = (0, false);
     }
 
     /// Gives nodes Σ m_p v_p N_i, Σ m_p N_i, Σ m_p N_i² and of the whole cell Σ V_p without what has opened and Σ m_p,
@@ -226,6 +304,9 @@ impl Sums {
         (to_nodes, to_pairs): &mut Giving,
     ) {
         let sum = &mut *records.sum;
+        if self.filled > 0 || self.empty {
+            self.add_up(simd);
+        }
         if !self.opened {
             (sum.solid, sum.closed) = (sum.volume, sum.volume);
         }
@@ -285,10 +366,7 @@ impl Sums {
 
 /// Particles side by side, as they lie in memory.
 struct Side {
-    shapes: [Lane; 4],
     position: [Lane; 3],
-    velocity: [Lane; 3],
-    mass: Lane,
     volume: Lane,
     stress: VoigtLanes,
     state: [Lane; STATE_SIZE],
@@ -296,12 +374,8 @@ struct Side {
 
 impl Default for Side {
     fn default() -> Side {
-        let vector = [Lane::of(0.0); 3];
         Side {
-            shapes: [Lane::of(0.0); 4],
-            position: vector,
-            velocity: vector,
-            mass: Lane::of(0.0),
+            position: [Lane::of(0.0); 3],
             volume: Lane::of(0.0),
             stress: [Lane::of(0.0); 6],
             state: [Lane::of(0.0); STATE_SIZE],
@@ -310,18 +384,25 @@ impl Default for Side {
 }
 
 for_each_simd! {
-    fn fetch(side: &mut Side, particles: &Particles, start: usize, shapes: &Shapes, held: &Held) {
+    fn fetch(
+        side: &mut Side,
+        carried: &mut Carried,
+        particles: &Particles,
+        start: usize,
+        shapes: &Shapes,
+        held: &Held,
+    ) {
         load(&mut side.position, &particles.position.components(), start);
-        load(&mut side.velocity, &particles.velocity.components(), start);
+        load(&mut carried.velocity, &particles.velocity.components(), start);
         load(&mut side.stress, &particles.stress.components(), start);
         load(&mut side.state, &particles.state.components(), start);
-        load_one(&mut side.mass, &particles.mass, start);
-        load_one(&mut side.volume, &particles.volume, start);
-        clear_rest(&mut side.mass, held);
-        clear_rest(&mut side.volume, held);
+        let (mut mass, mut volume) = (Lane::of(0.0), Lane::of(0.0));
+        load_one(&mut mass, &particles.mass, start);
+        load_one(&mut volume, &particles.volume, start);
+        (carried.mass, side.volume) = (only(held, &mass), only(held, &volume));
         for l in 0..LANES {
             let n = shapes.at(l, Vec3::from_array(get(&side.position, l)));
-            set(&mut side.shapes, l, n);
+            set(&mut carried.shapes, l, n);
         }
     }
 }
@@ -416,21 +497,19 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
             let (nodes, pairs) = (active.tile_nodes(number), mass.tile_pairs(number));
             shapes.enter(asked.simd, &mut moved, nodes, &shared.places);
-            sums.enter(asked.simd, &mut records);
+            sums.enter(&mut records);
             for slot in tile.slots() {
                 fetch(
                     asked.simd,
                     &mut side,
+                    sums.next(),
                     particles,
                     slot.start,
                     &shapes,
                     held(slot.len()),
                 );
                 let points = Counted {
-                    shapes: &side.shapes,
                     position: &side.position,
-                    velocity: &side.velocity,
-                    mass: &side.mass,
                     volume: &side.volume,
                     stress: &side.stress,
                     state: &side.state,

@@ -3,7 +3,7 @@
 use super::super::{State, Strained};
 use super::{MohrCoulomb, MohrCoulombState, YieldState, equivalent_strain};
 use crate::lanes::{
-    Held, LANES, Lane, Simd, any, clear_rest, either, for_each_simd, get, held, larger, set,
+    Held, LANES, Lane, Simd, any, either, for_each_simd, get, held, larger, only, set,
 };
 use crate::tensor::{self, Voigt};
 
@@ -85,17 +85,15 @@ for_each_simd! {
         unsure: &mut Lane,
         calm: &mut bool,
     ) {
-        let (mut restless, mut yielded) = (Lane::of(0.0), s.state[3]);
-        clear_rest(&mut yielded, held);
+        let mut restless = Lane::of(0.0);
+        let yielded = only(held, &s.state[3]);
         for l in 0..LANES {
             let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
             set(&mut s.stress, l, trial);
-            unsure[l] = either(model.surely_elastic(&trial), 0.0, 1.0);
-            restless[l] = either(s.state[2][l] > 0.0, 1.0, unsure[l]);
+            unsure[l] = either(model.surely_elastic(&trial), 0.0, held[l]);
+            restless[l] = either(s.state[2][l] > 0.0, held[l], unsure[l]);
             s.state[3][l] = 0.0;
         }
-        clear_rest(unsure, held);
-        clear_rest(&mut restless, held);
         *calm = !any(&*restless);
         s.changed = any(&*yielded);
     }

@@ -170,7 +170,7 @@ fn run(bench: &Bench) -> Result<(), Failure> {
     sim.settle();
     let rate = done as f64 / start.elapsed().as_secs_f64();
     let peak = moldwarp_io::check::peak_memory().map(|bytes| bytes as f64);
-    let mut filled = sim.particles().element.clone();
+    let mut filled = sim.particles().element.to_vec();
     filled.sort_unstable();
     filled.dedup();
     println!(

@@ -184,34 +184,54 @@ fn load_last(lane: &mut Lane, from: &[f64]) {
     lane[..from.len()].copy_from_slice(from);
 }
 
-/// Particles from the end of a slot to those that should be on their way from memory: the first cache has no room for
+/// Particles from the start of a slot to those that should be on their way from memory: the first cache has no room for
 /// more, so they come to the second.
-pub const AHEAD: usize = 64;
+pub const AHEAD: usize = 72;
+
+/// Tiles from one to that whose record should be on its way to the first cache.
+pub const RECORDS_AHEAD: usize = 3;
 
 /// Has the numbers of the particles of a slot fetched from memory, to be near when it is their turn.
 #[inline(always)]
 pub fn prefetch<const N: usize>(columns: &[&[f64]; N], start: usize) {
     for column in columns {
-        prefetch_line(column.as_ptr().wrapping_add(start));
+        prefetch_line(column.as_ptr().wrapping_add(start), false);
     }
 }
 
+/// To the first cache if `near`, else to the second.
 #[inline(always)]
-fn prefetch_line<T>(place: *const T) {
+fn prefetch_line<T>(place: *const T, near: bool) {
     #[cfg(target_arch = "x86_64")]
     {
-        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        use std::arch::x86_64::{_MM_HINT_T0, _MM_HINT_T1, _mm_prefetch};
         // SAFETY: a hint may have any address.
-        unsafe { _mm_prefetch::<_MM_HINT_T1>(place.cast()) };
+        unsafe {
+            match near {
+                true => _mm_prefetch::<_MM_HINT_T0>(place.cast()),
+                false => _mm_prefetch::<_MM_HINT_T1>(place.cast()),
+            }
+        };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = place;
+    let _ = (place, near);
+}
+
+/// The same for the record of a tile, if there is one.
+#[inline(always)]
+pub fn prefetch_record<T>(records: &[T], place: usize) {
+    if let Some(record) = records.get(place) {
+        let first = std::ptr::from_ref(record).cast::<[f64; 8]>();
+        for line in 0..size_of::<T>() / 64 {
+            prefetch_line(first.wrapping_add(line), true);
+        }
+    }
 }
 
 /// The same for their bodies.
 #[inline(always)]
 pub fn prefetch_bodies(bodies: &[u16], start: usize) {
-    prefetch_line(bodies.as_ptr().wrapping_add(start));
+    prefetch_line(bodies.as_ptr().wrapping_add(start), false);
 }
 
 /// Numbers of particles, one array a component, all of the same length.
@@ -229,18 +249,6 @@ impl<'a, const N: usize> Columns<'a, N> {
 
     fn len(&self) -> usize {
         self.0[0].len()
-    }
-
-    /// The number of a component at a place.
-    #[inline]
-    pub fn at(&self, component: usize, place: usize) -> f64 {
-        self.0[component][place]
-    }
-
-    /// The numbers of a component.
-    #[inline]
-    pub fn column(&self, component: usize) -> &[f64] {
-        self.0[component]
     }
 
     /// Copies the numbers of particles from `start` on to lanes: as many as there are lanes or particles.
@@ -266,11 +274,25 @@ impl<'a, const N: usize> Columns<'a, N> {
     /// Has the numbers of particles fetched from memory, to be near when it is their turn.
     #[inline(always)]
     pub fn prefetch(&self, start: usize) {
-        prefetch(&self.0.each_ref().map(|column| &**column), start);
+        for column in &self.0 {
+            prefetch_line(column.as_ptr().wrapping_add(start), false);
+        }
+    }
+
+    /// As [`Columns::store`], for kernels: mostly there are as many as there are lanes.
+    #[inline(always)]
+    pub fn keep(&mut self, simd: Simd, lanes: &[Lane; N], start: usize, count: usize) {
+        if count < LANES || self.len() < LANES || start > self.len() - LANES {
+            return self.store(simd, lanes, start, count);
+        }
+        for (lane, column) in lanes.iter().zip(&mut self.0) {
+            // SAFETY: all columns have the length that has been looked at.
+            unsafe { *column.as_mut_ptr().add(start).cast() = **lane };
+        }
     }
 
     /// Copies the first numbers of lanes to the particles from `start` on.
-    #[inline]
+    #[inline(never)]
     pub fn store(&mut self, simd: Simd, lanes: &[Lane; N], start: usize, count: usize) {
         assert!(count <= LANES && start <= self.len() && count <= self.len() - start);
         #[cfg(target_arch = "x86_64")]
@@ -423,10 +445,7 @@ mod tests {
                 columns.load(&mut back, 1);
                 columns.load(&mut back, 2);
                 for k in 0..2 {
-                    assert_eq!(
-                        (columns.at(k, 2), &back[k][1..6]),
-                        (numbers[2 * k], &lane[..5])
-                    );
+                    assert_eq!(back[k][..6], [&[numbers[2 * k]], &lane[..5]].concat());
                 }
                 assert_eq!((to[8], other[8]), (0.0, 8.0));
             }

@@ -176,10 +176,10 @@ fn a_law_that_fails_stops_the_run() {
         let id = sim.particles().id.clone();
         let body = sim.particles().body.clone();
         let left: Vec<u32> = id
-            .into_iter()
-            .zip(body)
-            .filter(|p| p.1 == 0)
-            .map(|p| p.0)
+            .iter()
+            .zip(&body)
+            .filter(|p| *p.1 == 0)
+            .map(|p| *p.0)
             .collect();
         (sim.step().unwrap_err(), left[7])
     };

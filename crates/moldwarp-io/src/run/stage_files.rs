@@ -106,15 +106,15 @@ impl StageFile {
         let particles = Particles {
             id: (0..count as u32).collect(),
             body: numbers("body")?.iter().map(|&b| b as u16).collect(),
-            element: vec![0; count],
+            element: vec![0; count].into(),
             origin: position.clone(),
             position,
             velocity: repeat_n(Vec3::ZERO, count).collect(),
             stress: order.iter().map(|&p| stress[p]).collect(),
             state: repeat_n(State::default(), count).collect(),
-            volume: numbers("volume")?,
-            initial_volume: numbers("initial_volume")?,
-            mass: numbers("mass")?,
+            volume: numbers("volume")?.into(),
+            initial_volume: numbers("initial_volume")?.into(),
+            mass: numbers("mass")?.into(),
         };
         let known = |&b: &u16| usize::from(b) < bodies.len();
         let positive = [

@@ -186,7 +186,7 @@ fn keep_known(particles: &mut Particles, numbers: &[Option<usize>]) {
     let number = |body: &u16| numbers[usize::from(*body)];
     let kept: Vec<bool> = particles.body.iter().map(|b| number(b).is_some()).collect();
     particles.retain(&kept);
-    for body in &mut particles.body {
+    for body in particles.body.iter_mut() {
         *body = number(body).unwrap_or_default() as u16;
     }
 }

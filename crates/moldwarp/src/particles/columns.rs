@@ -1,6 +1,6 @@
 //! Vectors and tensors of all particles, component by component.
 
-use super::State;
+use super::{Column, State};
 use crate::Vec3;
 use crate::material::STATE_SIZE;
 use crate::saved::{Broken, Bytes, Out, Saved};
@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 /// Values of N components, one array a component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns<T, const N: usize> {
-    columns: [Vec<f64>; N],
+    columns: [Column<f64>; N],
     values: PhantomData<T>,
 }
 
@@ -24,7 +24,7 @@ pub type States = Columns<State, STATE_SIZE>;
 impl<T, const N: usize> Default for Columns<T, N> {
     fn default() -> Columns<T, N> {
         Columns {
-            columns: std::array::from_fn(|_| Vec::new()),
+            columns: std::array::from_fn(|_| Column::default()),
             values: PhantomData,
         }
     }
@@ -79,7 +79,7 @@ impl<T: From<[f64; N]> + Into<[f64; N]>, const N: usize> Columns<T, N> {
         self.columns.each_mut().map(|column| &mut column[..])
     }
 
-    pub(crate) fn columns_mut(&mut self) -> &mut [Vec<f64>; N] {
+    pub(crate) fn columns_mut(&mut self) -> &mut [Column<f64>; N] {
         &mut self.columns
     }
 }
@@ -102,7 +102,7 @@ impl<T, const N: usize> Saved for Columns<T, N> {
     }
 
     fn load(from: &mut Bytes) -> Result<Columns<T, N>, Broken> {
-        let columns = <[Vec<f64>; N]>::load(from)?;
+        let columns = <[Column<f64>; N]>::load(from)?;
         match columns.iter().all(|c| c.len() == columns[0].len()) {
             true => Ok(Columns {
                 columns,

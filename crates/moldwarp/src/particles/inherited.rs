@@ -79,8 +79,8 @@ pub(crate) fn append(
         id[p] = new;
     }
     particles.append(Particles {
-        id,
-        element,
+        id: id.into(),
+        element: element.into(),
         velocity: std::iter::repeat_n(Vec3::ZERO, count).collect(),
         origin: inherited.position.clone(),
         ..inherited.clone()

@@ -1,11 +1,13 @@
 //! Material points: a structure of arrays, in the order in which the step works on them.
 
+mod column;
 mod columns;
 pub(crate) mod inherited;
 pub mod initial_stress;
 mod order;
 mod seeding;
 
+pub use column::Column;
 pub use columns::{Columns, States, Tensors, Vectors};
 pub use inherited::InheritedError;
 pub use initial_stress::{InitialStress, InitialStressError};
@@ -19,11 +21,11 @@ use crate::material::State;
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
     /// Number of each particle; it never changes. Bodies that are not there have theirs reserved.
-    pub id: Vec<u32>,
+    pub id: Column<u32>,
     /// Index into the plan's bodies.
-    pub body: Vec<u16>,
+    pub body: Column<u16>,
     /// The element each particle is in.
-    pub element: Vec<u32>,
+    pub element: Column<u32>,
     /// m.
     pub position: Vectors,
     /// m/s. Between the steps of a stage it belongs to the middle of the coming step.
@@ -35,20 +37,20 @@ pub struct Particles {
     /// State variables of the material model.
     pub state: States,
     /// m³.
-    pub volume: Vec<f64>,
+    pub volume: Column<f64>,
     /// m³.
-    pub initial_volume: Vec<f64>,
+    pub initial_volume: Column<f64>,
     /// kg; it never changes.
-    pub mass: Vec<f64>,
+    pub mass: Column<f64>,
 }
 
 impl Particles {
     /// None, with room for so many.
     pub(crate) fn with_capacity(count: usize) -> Particles {
         let mut particles = Particles {
-            id: Vec::with_capacity(count),
-            body: Vec::with_capacity(count),
-            element: Vec::with_capacity(count),
+            id: Column::with_capacity(count),
+            body: Column::with_capacity(count),
+            element: Column::with_capacity(count),
             ..Particles::default()
         };
         let columns = particles.columns_mut();
@@ -112,24 +114,24 @@ impl Particles {
 
     /// Puts others after these.
     pub(crate) fn append(&mut self, mut others: Particles) {
-        self.id.append(&mut others.id);
-        self.body.append(&mut others.body);
-        self.element.append(&mut others.element);
+        self.id.extend_from_slice(&others.id);
+        self.body.extend_from_slice(&others.body);
+        self.element.extend_from_slice(&others.element);
         for (own, other) in self.columns_mut().zip(others.columns_mut()) {
-            own.append(other);
+            own.extend_from_slice(other);
         }
     }
 
     /// Keeps those whose place is marked, in their order.
     pub fn retain(&mut self, keep: &[bool]) {
-        retain(&mut self.id, keep);
-        retain(&mut self.body, keep);
-        retain(&mut self.element, keep);
-        self.columns_mut().for_each(|column| retain(column, keep));
+        self.id.retain(keep);
+        self.body.retain(keep);
+        self.element.retain(keep);
+        self.columns_mut().for_each(|column| column.retain(keep));
     }
 
     /// Works on the numbers that a step changes, one array a component; two threads share them.
-    pub(crate) fn for_working_columns(&mut self, work: impl Fn(&mut Vec<f64>) + Sync) {
+    pub(crate) fn for_working_columns(&mut self, work: impl Fn(&mut Column<f64>) + Sync) {
         let of_motion = (self.position.columns_mut().iter_mut())
             .chain(self.velocity.columns_mut())
             .chain([&mut self.volume, &mut self.mass]);
@@ -138,7 +140,7 @@ impl Particles {
     }
 
     /// All numbers of particles, one array a component.
-    pub(crate) fn columns_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+    pub(crate) fn columns_mut(&mut self) -> impl Iterator<Item = &mut Column<f64>> {
         (self.position.columns_mut().iter_mut())
             .chain(self.velocity.columns_mut())
             .chain(self.origin.columns_mut())
@@ -146,9 +148,4 @@ impl Particles {
             .chain(self.state.columns_mut())
             .chain([&mut self.volume, &mut self.initial_volume, &mut self.mass])
     }
-}
-
-fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
-    let mut keep = keep.iter();
-    values.retain(|_| *keep.next().expect("a mark for each particle"));
 }

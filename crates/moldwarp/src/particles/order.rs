@@ -3,7 +3,7 @@
 //! The *rank* of a particle counts by element, and within it by velocity field; those of one element and
 //! field keep the order that they had. Its *place* is where it lies in the arrays: in [`Tiles`](crate::lanes::Tiles).
 
-use super::Particles;
+use super::{Column, Particles};
 use crate::contact::Fields;
 use crate::parallel::fold;
 use std::ops::Range;
@@ -15,16 +15,16 @@ pub struct Order {
     first: Vec<u32>,
     fields: usize,
     /// The element under which each particle lies: the one in which it was when they were put in order.
-    pub filed: Vec<u32>,
+    pub filed: Column<u32>,
     /// Place of each particle by rank.
     places: Vec<u32>,
     /// Where each particle went in the last sort: new place by old place.
     pub destination: Vec<u32>,
     /// The reverse.
     source: Vec<u32>,
-    numbers: Vec<f64>,
-    indices: Vec<u32>,
-    bodies: Vec<u16>,
+    numbers: Column<f64>,
+    indices: Column<u32>,
+    bodies: Column<u16>,
 }
 
 impl Order {
@@ -124,8 +124,8 @@ const BLOCK: usize = 4096;
 
 fn permute<T: Copy + Default + Send + Sync>(
     source: &[u32],
-    values: &mut Vec<T>,
-    spare: &mut Vec<T>,
+    values: &mut Column<T>,
+    spare: &mut Column<T>,
 ) {
     spare.reserve_exact(values.capacity().saturating_sub(spare.len()));
     spare.resize(values.len(), T::default());

@@ -8,7 +8,7 @@
 //! it moves with (`contact`).
 
 use crate::contact::Fields;
-use crate::lanes::{LANES, Pile, Tiles};
+use crate::lanes::{LANES, Pile, RECORDS_AHEAD, Tiles, prefetch_record};
 use crate::mesh::{Corner, Mesh, NONE, Walls};
 use crate::particles::Order;
 use std::ops::Range;
@@ -73,10 +73,12 @@ impl Active {
         &self.node_cells[self.node_offsets[slot] as usize..self.node_offsets[slot + 1] as usize]
     }
 
-    /// The nodes of a tile's cells.
+    /// The nodes of a tile's cells; those of one that comes later are fetched from memory.
     #[inline(always)]
     pub fn tile_nodes(&self, tile: usize) -> &[[u32; 4]; LANES] {
-        &self.cell_nodes.as_chunks().0[tile]
+        let tiles = self.cell_nodes.as_chunks().0;
+        prefetch_record(tiles, tile + RECORDS_AHEAD);
+        &tiles[tile]
     }
 
     /// Number of cells.

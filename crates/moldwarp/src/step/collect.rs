@@ -9,7 +9,7 @@
 //! Guests (`guests.rs`) are a portion of all nodes, which is there if they are. More of them only add to what their nodes
 //! have been given.
 
-use super::corners::{Corners, Quad, add_alike, add_corners};
+use super::corners::{Corners, Quad, TileNodes, add_alike, add_corners, add_pairs};
 use super::mass::ConsistentMass;
 use super::state::room_for;
 use crate::lanes::{LANES, Lane, Simd};
@@ -184,7 +184,7 @@ impl<T: Copy + Default> Collected<T> {
         }
     }
 
-    /// Finds the sums of these items, each of N one after another.
+    /// Adds up what these items have been given, each of N one after another.
     #[inline]
     pub fn sums<const N: usize>(&self, items: Range<usize>, sums: &mut [&mut [T]; N])
     where
@@ -210,8 +210,6 @@ fn sum_windows<T: Copy + Default + AddAssign, const N: usize>(
     items: Range<usize>,
     sums: &mut [&mut [T]; N],
 ) {
-    let count = items.len();
-    (sums.iter_mut()).for_each(|sums| sums[..count].fill(T::default()));
     for window in windows {
         let own = window.items();
         let both = own.start.max(items.start)..own.end.min(items.end);
@@ -295,13 +293,7 @@ impl<const N: usize> Share<'_, Quad, N> {
 
     /// Gives each node of cells its vector and a number, as its first quad.
     #[inline]
-    pub fn give(
-        &mut self,
-        simd: Simd,
-        nodes: &[[u32; 4]; LANES],
-        vectors: &Corners,
-        fourth: &[Lane; 4],
-    ) {
+    pub fn give(&mut self, simd: Simd, nodes: TileNodes, vectors: &Corners, fourth: &[Lane; 4]) {
         let first = self.first;
         add_corners(simd, self.quad(0), first, nodes, vectors, fourth);
     }
@@ -311,7 +303,7 @@ impl<const N: usize> Share<'_, Quad, N> {
     pub fn give_alike(
         &mut self,
         simd: Simd,
-        nodes: &[[u32; 4]; LANES],
+        nodes: TileNodes,
         numbers: [&Lane; 2],
         own: Option<&[Lane; 4]>,
     ) {
@@ -323,12 +315,8 @@ impl<const N: usize> Share<'_, Quad, N> {
 impl Share<'_, f64, 1> {
     /// Gives each pair of nodes of cells its number.
     #[inline]
-    pub fn give_pairs(&mut self, pairs: &[[u32; 6]; LANES], numbers: &[Lane; 6]) {
-        for (l, pairs) in pairs.iter().enumerate() {
-            for (k, &pair) in pairs.iter().enumerate() {
-                self.given[pair as usize - self.first] += numbers[k][l];
-            }
-        }
+    pub fn give_pairs(&mut self, simd: Simd, pairs: &[[u32; 6]; LANES], numbers: &[Lane; 6]) {
+        add_pairs(simd, self.given, self.first, pairs, numbers);
     }
 }
 
@@ -361,6 +349,7 @@ mod tests {
                 });
                 let mut vectors = NO_CORNERS;
                 (0..4).for_each(|i| vectors[3 * i] = one);
+                let nodes = TileNodes::new(Simd::best(), nodes);
                 share.give(Simd::best(), nodes, &vectors, &numbers);
                 share.give_alike(Simd::best(), nodes, [&one, &one], Some(&numbers));
             }

@@ -1,11 +1,14 @@
 //! Nodal values of cells side by side: how they come from nodes and go to them.
 //!
 //! A node has four numbers together, which are loaded at once; a tile has each number of a corner in lanes. Between
-//! them lies the transposition of four cells at a time, which compilers do not find: it is written with
-//! AVX2 instructions where the processor has them. What is added has the same order with and without.
+//! them lies the transposition of four or eight cells at a time, which compilers do not find: it is written with
+//! AVX2 or AVX-512 instructions where the processor has them. What is added has the same order with and without.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, Simd};
+use crate::lanes::{LANES, Lane, Simd, for_each_simd};
 
 /// A vector of a node with one more number, or up to four numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,6 +35,70 @@ impl std::ops::AddAssign for Quad {
         for (sum, more) in self.0.iter_mut().zip(other.0) {
             *sum += more;
         }
+    }
+}
+
+/// The nodes of cells side by side, with the numbers that they lie between.
+#[derive(Clone, Copy)]
+pub struct TileNodes<'a> {
+    cells: &'a [[u32; 4]; LANES],
+    span: Span,
+}
+
+/// What numbers lie between.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    least: u32,
+    greatest: u32,
+}
+
+impl Span {
+    /// Of a multiple of 16 numbers.
+    #[inline]
+    fn of(simd: Simd, numbers: &[u32]) -> Span {
+        let mut span = Span::default();
+        find_span(simd, numbers, &mut span);
+        span
+    }
+
+    /// Whether the numbers are among so many from this one on.
+    #[inline]
+    fn is_within(self, from: usize, count: usize) -> bool {
+        self.least as usize >= from && self.greatest as usize - from < count
+    }
+}
+
+impl<'a> TileNodes<'a> {
+    #[inline]
+    pub fn new(simd: Simd, cells: &'a [[u32; 4]; LANES]) -> TileNodes<'a> {
+        let span = Span::of(simd, cells.as_flattened());
+        TileNodes { cells, span }
+    }
+
+    /// Whether they are among so many from this one on.
+    #[inline]
+    fn are_among(self, from: usize, count: usize) -> bool {
+        self.span.is_within(from, count)
+    }
+}
+
+impl std::ops::Deref for TileNodes<'_> {
+    type Target = [[u32; 4]; LANES];
+
+    #[inline(always)]
+    fn deref(&self) -> &[[u32; 4]; LANES] {
+        self.cells
+    }
+}
+
+for_each_simd! {
+    fn find_span(numbers: &[u32], span: &mut Span) {
+        let (mut least, mut greatest) = (u32::MAX, 0);
+        for &n in numbers.as_chunks::<16>().0.as_flattened() {
+            least = least.min(n);
+            greatest = greatest.max(n);
+        }
+        *span = Span { least, greatest };
     }
 }
 
@@ -68,26 +135,21 @@ pub(super) fn set_corner(corners: &mut Corners, l: usize, i: usize, value: Vec3)
 
 /// Sums of a number of the nodes of cells side by side.
 #[inline(always)]
-pub(super) fn sum_nodes(sums: &mut Lane, cells: &[[u32; 4]; LANES], numbers: &[f64]) {
-    for (sum, cell) in sums.iter_mut().zip(cells) {
+pub(super) fn sum_nodes(sums: &mut Lane, nodes: TileNodes, numbers: &[f64]) {
+    for (sum, cell) in sums.iter_mut().zip(*nodes) {
         *sum = cell.iter().map(|&n| numbers[n as usize]).sum();
     }
 }
 
 /// Copies vectors of the nodes of cells side by side.
-pub(super) fn load_nodes(
-    simd: Simd,
-    corners: &mut Corners,
-    cells: &[[u32; 4]; LANES],
-    vectors: &[Quad],
-) {
+pub(super) fn load_nodes(simd: Simd, corners: &mut Corners, nodes: TileNodes, vectors: &[Quad]) {
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::load_nodes(corners, None, cells, vectors) };
+        return unsafe { avx2::load_nodes(corners, None, nodes, vectors) };
     }
     let _ = simd;
-    load_plainly(corners, None, cells, vectors);
+    load_plainly(corners, None, nodes, vectors);
 }
 
 /// The same, and sums up their fourth numbers.
@@ -95,25 +157,25 @@ pub(super) fn load_and_sum(
     simd: Simd,
     corners: &mut Corners,
     sums: &mut Lane,
-    cells: &[[u32; 4]; LANES],
+    nodes: TileNodes,
     quads: &[Quad],
 ) {
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::load_nodes(corners, Some(sums), cells, quads) };
+        return unsafe { avx2::load_nodes(corners, Some(sums), nodes, quads) };
     }
     let _ = simd;
-    load_plainly(corners, Some(sums), cells, quads);
+    load_plainly(corners, Some(sums), nodes, quads);
 }
 
 fn load_plainly(
     corners: &mut Corners,
     mut sums: Option<&mut Lane>,
-    cells: &[[u32; 4]; LANES],
+    nodes: TileNodes,
     quads: &[Quad],
 ) {
-    for (l, cell) in cells.iter().enumerate() {
+    for (l, cell) in nodes.iter().enumerate() {
         let mut sum = 0.0;
         for (i, &n) in cell.iter().enumerate() {
             set_corner(corners, l, i, quads[n as usize].vector());
@@ -130,17 +192,17 @@ pub(super) fn add_corners(
     simd: Simd,
     to: &mut [Quad],
     first: usize,
-    cells: &[[u32; 4]; LANES],
+    nodes: TileNodes,
     vectors: &Corners,
     fourth: &[Lane; 4],
 ) {
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::add_corners(to, first, cells, vectors, fourth) };
+        return unsafe { avx2::add_corners(to, first, nodes, vectors, fourth) };
     }
     let _ = simd;
-    for (four, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
+    for (four, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
         for i in 0..4 {
             for (j, cell) in cells.iter().enumerate() {
                 let l = 4 * four + j;
@@ -151,171 +213,44 @@ pub(super) fn add_corners(
     }
 }
 
-/// The same with two numbers that are alike for all corners, and perhaps one for each.
+/// Adds to the numbers of pairs of nodes, of which that of pair `first` comes first.
+pub(super) fn add_pairs(
+    simd: Simd,
+    to: &mut [f64],
+    first: usize,
+    pairs: &[[u32; 6]; LANES],
+    numbers: &[Lane; 6],
+) {
+    assert!(Span::of(simd, pairs.as_flattened()).is_within(first, to.len()));
+    for (l, pairs) in pairs.iter().enumerate() {
+        for (k, &pair) in pairs.iter().enumerate() {
+            // SAFETY: it is among those that are there.
+            *unsafe { to.get_unchecked_mut(pair as usize - first) } += numbers[k][l];
+        }
+    }
+}
+
+/// Adds to numbers of nodes, as [`add_corners`], two that are alike for all corners, and perhaps one for each.
 pub(super) fn add_alike(
     simd: Simd,
     to: &mut [Quad],
     first: usize,
-    cells: &[[u32; 4]; LANES],
+    nodes: TileNodes,
     [a, b]: [&Lane; 2],
     own: Option<&[Lane; 4]>,
 ) {
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::add_alike(to, first, cells, [a, b], own) };
+        return unsafe { avx2::add_alike(to, first, nodes, [a, b], own) };
     }
     let _ = simd;
-    for (four, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
+    for (four, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
         for i in 0..4 {
             for (j, cell) in cells.iter().enumerate() {
                 let l = 4 * four + j;
                 let own = own.map_or(0.0, |own| own[i][l]);
                 to[cell[i] as usize - first] += Quad([a[l], b[l], own, 0.0]);
-            }
-        }
-    }
-}
-
-/// Whether all nodes are among so many from the first one on.
-#[inline(always)]
-fn within(cells: &[[u32; 4]; LANES], from: usize, count: usize) -> bool {
-    let (mut first, mut last) = ([u32::MAX; 16], [0; 16]);
-    for group in cells.as_flattened().as_chunks::<16>().0 {
-        for (k, &n) in group.iter().enumerate() {
-            first[k] = first[k].min(n);
-            last[k] = last[k].max(n);
-        }
-    }
-    let first = first.into_iter().fold(u32::MAX, u32::min);
-    let last = last.into_iter().fold(0, u32::max);
-    first as usize >= from && last as usize - from < count
-}
-
-#[cfg(target_arch = "x86_64")]
-mod avx2 {
-    use super::{Corners, LANES, Lane, Quad, within};
-    use std::arch::x86_64::*;
-
-    /// Rows to columns.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn transpose(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [__m256d; 4] {
-        let (ab, cd) = (_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d));
-        let (ab_odd, cd_odd) = (_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d));
-        [
-            _mm256_permute2f128_pd::<0x20>(ab, cd),
-            _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd),
-            _mm256_permute2f128_pd::<0x31>(ab, cd),
-            _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
-        ]
-    }
-
-    /// Four lanes, beginning with `l`, which is a multiple of four.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn four(lane: &Lane, l: usize) -> __m256d {
-        let four: &[f64; 4] = &lane.as_chunks::<4>().0[l / 4];
-        // SAFETY: there are four.
-        unsafe { _mm256_loadu_pd(four.as_ptr()) }
-    }
-
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn set_four(lane: &mut Lane, l: usize, four: __m256d) {
-        let to: &mut [f64; 4] = &mut lane.as_chunks_mut::<4>().0[l / 4];
-        // SAFETY: there are four.
-        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), four) }
-    }
-
-    #[target_feature(enable = "avx2")]
-    pub fn load_nodes(
-        corners: &mut Corners,
-        mut sums: Option<&mut Lane>,
-        cells: &[[u32; 4]; LANES],
-        quads: &[Quad],
-    ) {
-        assert!(within(cells, 0, quads.len()));
-        let from = quads.as_ptr().cast::<f64>();
-        for (k, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
-            let mut sum = _mm256_setzero_pd();
-            for i in 0..4 {
-                // SAFETY: all nodes are there.
-                let rows = unsafe {
-                    [
-                        _mm256_load_pd(from.add(4 * cells[0][i] as usize)),
-                        _mm256_load_pd(from.add(4 * cells[1][i] as usize)),
-                        _mm256_load_pd(from.add(4 * cells[2][i] as usize)),
-                        _mm256_load_pd(from.add(4 * cells[3][i] as usize)),
-                    ]
-                };
-                let [x, y, z, fourth] = transpose(rows[0], rows[1], rows[2], rows[3]);
-                sum = _mm256_add_pd(sum, fourth);
-                set_four(&mut corners[3 * i], 4 * k, x);
-                set_four(&mut corners[3 * i + 1], 4 * k, y);
-                set_four(&mut corners[3 * i + 2], 4 * k, z);
-            }
-            if let Some(sums) = &mut sums {
-                set_four(sums, 4 * k, sum);
-            }
-        }
-    }
-
-    /// # Safety
-    /// The node must be there.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    unsafe fn add(to: &mut [Quad], at: usize, more: __m256d) {
-        // SAFETY: the caller's.
-        unsafe {
-            let to = to.as_mut_ptr().add(at).cast::<f64>();
-            _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), more));
-        }
-    }
-
-    #[target_feature(enable = "avx2")]
-    pub fn add_corners(
-        to: &mut [Quad],
-        first: usize,
-        cells: &[[u32; 4]; LANES],
-        vectors: &Corners,
-        fourth: &[Lane; 4],
-    ) {
-        assert!(within(cells, first, to.len()));
-        for (k, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
-            for i in 0..4 {
-                let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c], 4 * k));
-                let rows = transpose(x, y, z, four(&fourth[i], 4 * k));
-                for j in 0..4 {
-                    // SAFETY: all nodes are there.
-                    unsafe { add(to, cells[j][i] as usize - first, rows[j]) };
-                }
-            }
-        }
-    }
-
-    #[target_feature(enable = "avx2")]
-    pub fn add_alike(
-        to: &mut [Quad],
-        first: usize,
-        cells: &[[u32; 4]; LANES],
-        [a, b]: [&Lane; 2],
-        own: Option<&[Lane; 4]>,
-    ) {
-        assert!(within(cells, first, to.len()));
-        let zero = _mm256_setzero_pd();
-        for (k, cells) in cells.as_chunks::<4>().0.iter().enumerate() {
-            let (a, b) = (four(a, 4 * k), four(b, 4 * k));
-            let alike = transpose(a, b, zero, zero);
-            for i in 0..4 {
-                let rows = match own {
-                    Some(own) => transpose(a, b, four(&own[i], 4 * k), zero),
-                    None => alike,
-                };
-                for j in 0..4 {
-                    // SAFETY: all nodes are there.
-                    unsafe { add(to, cells[j][i] as usize - first, rows[j]) };
-                }
             }
         }
     }
@@ -330,6 +265,7 @@ mod tests {
     fn instructions_change_no_bit() {
         let cells: [[u32; 4]; LANES] =
             std::array::from_fn(|l| std::array::from_fn(|i| 7 + ((l * 3 + i * 5) % 23) as u32));
+        let nodes = |simd| TileNodes::new(simd, &cells);
         let number = |k: usize| (k as f64 * 0.37).sin();
         let quads: Vec<Quad> = (0..40)
             .map(|n| Quad(std::array::from_fn(|k| number(4 * n + k))))
@@ -339,7 +275,7 @@ mod tests {
         both(&|simd| {
             let mut corners = NO_CORNERS;
             let mut sums = Lane::of(0.0);
-            load_and_sum(simd, &mut corners, &mut sums, &cells, &quads);
+            load_and_sum(simd, &mut corners, &mut sums, nodes(simd), &quads);
             let vectors = (0..LANES).flat_map(|l| all_corners(&corners, l));
             let sums = sums.iter().map(|&sum| Quad([sum, 0.0, 0.0, 0.0]));
             vectors.map(Quad::from).chain(sums).collect()
@@ -349,20 +285,27 @@ mod tests {
         both(&|simd| {
             let mut sums = vec![Quad::default(); 23];
             let fourth = std::array::from_fn(|k| lane(k + 12));
-            add_corners(simd, &mut sums, 7, &cells, &vectors, &fourth);
-            add_alike(simd, &mut sums, 7, &cells, [&lane(20), &lane(21)], None);
+            add_corners(simd, &mut sums, 7, nodes(simd), &vectors, &fourth);
             add_alike(
                 simd,
                 &mut sums,
                 7,
-                &cells,
+                nodes(simd),
+                [&lane(20), &lane(21)],
+                None,
+            );
+            add_alike(
+                simd,
+                &mut sums,
+                7,
+                nodes(simd),
                 [&lane(22), &lane(23)],
                 Some(&fourth),
             );
             sums
         });
         let mut corners = NO_CORNERS;
-        load_nodes(Simd::best(), &mut corners, &cells, &quads);
+        load_nodes(Simd::best(), &mut corners, nodes(plain), &quads);
         let expected = quads[cells[5][2] as usize].vector();
         assert_eq!(corner(&corners, 5, 2), expected);
     }
@@ -374,6 +317,7 @@ mod tests {
         let mut sums = vec![Quad::default(); 3];
         let cells = [[5, 6, 7, 8]; LANES];
         let zero = Lane::of(0.0);
-        add_alike(Simd::best(), &mut sums, 5, &cells, [&zero, &zero], None);
+        let nodes = TileNodes::new(Simd::best(), &cells);
+        add_alike(Simd::best(), &mut sums, 5, nodes, [&zero, &zero], None);
     }
 }

@@ -22,6 +22,7 @@
 use super::corners::Quad;
 use super::{BLOCK, ConsistentMass, Node, Shared};
 use crate::Vec3;
+use crate::lanes::Simd;
 use crate::parallel::fold;
 use crate::plan::MassMatrix;
 use crate::simulation::Simulation;
@@ -41,7 +42,7 @@ pub(super) fn stiffening(mass: MassMatrix) -> f64 {
 }
 
 /// θ, if masses are corrected.
-pub(super) fn theta(mass: MassMatrix) -> f64 {
+fn theta(mass: MassMatrix) -> f64 {
     match mass {
         MassMatrix::Lumped => 0.0,
         MassMatrix::Corrected => CORRECTION,
@@ -60,19 +61,46 @@ pub(super) fn give(nodes: &[Node], given: &mut [Quad], w: impl Fn(&Node) -> Vec3
     });
 }
 
-/// B w − w at a node of this lumped mass.
-#[inline]
-pub(super) fn change(
+/// What B w − w takes at nodes.
+pub(super) struct Change<'a> {
     theta: f64,
-    matrix: &ConsistentMass,
-    slot: usize,
-    mass: f64,
-    given: &[Quad],
-) -> Vec3 {
-    if theta == 0.0 || mass == 0.0 {
-        return Vec3::ZERO;
+    matrix: &'a ConsistentMass,
+    simd: Simd,
+    given: &'a [Quad],
+}
+
+impl<'a> Change<'a> {
+    /// Of what nodes have given.
+    pub fn new(
+        mass: MassMatrix,
+        matrix: &'a ConsistentMass,
+        simd: Simd,
+        given: &'a [Quad],
+    ) -> Change<'a> {
+        Change {
+            theta: theta(mass),
+            matrix,
+            simd,
+            given,
+        }
     }
-    matrix.flow(slot, given) * (theta / mass)
+
+    /// Σ_j M_ij (w_i − w_j) of each of these nodes, if it counts.
+    #[inline]
+    pub fn flows(&self, nodes: Range<usize>, flows: &mut [Quad]) {
+        if self.theta > 0.0 {
+            self.matrix.flows(self.simd, nodes, self.given, flows);
+        }
+    }
+
+    /// B w − w at a node of this lumped mass.
+    #[inline]
+    pub fn at(&self, mass: f64, flow: Quad) -> Vec3 {
+        if self.theta == 0.0 || mass == 0.0 {
+            return Vec3::ZERO;
+        }
+        flow.vector() * (self.theta / mass)
+    }
 }
 
 /// What particles receive of the accelerations that nodes have given, in a kick of length `h`.
@@ -85,23 +113,24 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         cells,
         constraints,
         ledger,
+        simd,
         ..
     } = sim;
-    let (active, matrix, constraints) = (&*active, &cells.mass, &*constraints);
-    let theta = theta(plan.numerics.mass);
+    let (active, constraints) = (&*active, &*constraints);
     let Shared {
         given, received, ..
     } = shared;
-    let given = &given[..];
+    let change = Change::new(plan.numerics.mass, &cells.mass, *simd, given);
     let items = (0..nodes.len(), &mut nodes[..], &mut received[..]);
     let gain = fold(items, BLOCK, &|(slots, nodes, received): (
         Range<usize>,
         &mut [Node],
         &mut [Quad],
     )| {
-        let mut gain = 0.0;
-        for ((slot, node), received) in slots.zip(nodes).zip(received) {
-            let change = change(theta, matrix, slot, node.mass, given);
+        let (mut gain, mut flows) = (0.0, [Quad::default(); BLOCK]);
+        change.flows(slots.clone(), &mut flows);
+        for (((slot, node), received), &flow) in slots.zip(nodes).zip(received).zip(&flows) {
+            let change = change.at(node.mass, flow);
             node.received = node.acceleration
                 + match constraints.of(active.nodes[slot]) {
                     Some(constraint) => constraint.free * change,

@@ -10,7 +10,7 @@
 //!
 //! Only where one body moves in a mesh that stays; else particles are put in order in each step.
 
-use crate::particles::{Order, Particles};
+use crate::particles::{Column, Order, Particles};
 use crate::simulation::Simulation;
 use crate::step::Active;
 
@@ -212,26 +212,33 @@ impl Guests {
         true
     }
 
-    /// Those from the `first` one on come.
-    fn arrive(&mut self, first: usize, particles: &mut Particles, filed: &mut Vec<u32>) {
+    /// Those from the `first` one on, with which a batch begins, come.
+    fn arrive(&mut self, mut first: usize, particles: &mut Particles, filed: &mut Column<u32>) {
         self.present = true;
-        let from = &self.from[first..];
-        let Particles {
-            id, body, element, ..
-        } = particles;
-        copy(id, from);
-        copy(body, from);
-        copy(element, from);
-        filed.extend_from_slice(&self.elements[first..]);
-        particles.for_working_columns(|column| copy(column, from));
-        for &p in from {
-            let p = p as usize;
-            (particles.mass[p], particles.volume[p]) = (0.0, 0.0);
-            particles.element[p] = filed[p];
+        for &end in &self.ends {
+            let batch = first..end as usize;
+            if batch.is_empty() {
+                continue;
+            }
+            first = batch.end;
+            let from = &self.from[batch.clone()];
+            let Particles {
+                id, body, element, ..
+            } = particles;
+            copy(id, from);
+            copy(body, from);
+            copy(element, from);
+            filed.extend_from_slice(&self.elements[batch]);
+            particles.for_working_columns(|column| copy(column, from));
+            for &p in from {
+                let p = p as usize;
+                (particles.mass[p], particles.volume[p]) = (0.0, 0.0);
+                particles.element[p] = filed[p];
+            }
         }
     }
 
-    fn leave(&mut self, particles: &mut Particles, filed: &mut Vec<u32>) {
+    fn leave(&mut self, particles: &mut Particles, filed: &mut Column<u32>) {
         if !self.present {
             return;
         }
@@ -265,14 +272,18 @@ pub(crate) fn homes(from: &[u32], particles: usize) -> impl Iterator<Item = usiz
     all.filter(move |&p| p < particles)
 }
 
-fn copy<T: Copy>(values: &mut Vec<T>, from: &[u32]) {
-    for &p in from {
-        values.push(values[p as usize]);
+fn copy<T: Copy + Default>(values: &mut Column<T>, from: &[u32]) {
+    let first = values.len();
+    values.resize(first + from.len(), T::default());
+    let (known, new) = values.split_at_mut(first);
+    // None of a batch comes from another one's place.
+    for (value, &p) in new.iter_mut().zip(from) {
+        *value = known[p as usize];
     }
 }
 
 /// The last ones first: one that has come from a guest's place goes there, and then on with that one.
-fn put_back<T: Copy>(values: &mut Vec<T>, from: &[u32]) {
+fn put_back<T: Copy + Default>(values: &mut Column<T>, from: &[u32]) {
     for &p in from.iter().rev() {
         values[p as usize] = values.pop().expect("one for each");
     }

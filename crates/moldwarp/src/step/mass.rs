@@ -6,8 +6,7 @@
 use super::BLOCK;
 use super::collect::Portions;
 use super::corners::Quad;
-use crate::Vec3;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, RECORDS_AHEAD, Simd, for_each_simd, prefetch_record};
 use crate::parallel::fold;
 use std::ops::Range;
 
@@ -122,7 +121,9 @@ impl ConsistentMass {
     /// Pairs of the nodes of a tile's cells.
     #[inline(always)]
     pub fn tile_pairs(&self, tile: usize) -> &[[u32; 6]; LANES] {
-        &self.pairs.as_chunks().0[tile]
+        let tiles = self.pairs.as_chunks().0;
+        prefetch_record(tiles, tile + RECORDS_AHEAD);
+        &tiles[tile]
     }
 
     /// Adds up what portions have for each pair.
@@ -132,39 +133,56 @@ impl ConsistentMass {
             Range<usize>,
             &mut [f64],
         )| {
+            values.fill(0.0);
             portions.pairs.sums(pairs, &mut [values]);
         });
     }
 
-    /// Σ_j M_ij w_j of a node.
+    /// Σ_j M_ij w_j of each of these nodes.
     #[inline]
-    pub fn product(&self, node: usize, w: &[Quad]) -> Vec3 {
-        let mut sum = w[node].0.map(|x| x * self.diagonal[node]);
-        for link in self.links(node) {
-            let (m, w) = (self.values[link.pair as usize], w[link.node as usize].0);
-            for k in 0..4 {
-                sum[k] += m * w[k];
-            }
-        }
-        Quad(sum).vector()
+    pub fn products(&self, simd: Simd, nodes: Range<usize>, w: &[Quad], sums: &mut [Quad]) {
+        products(simd, self, nodes, w, sums);
     }
 
-    /// Σ_j M_ij (w_i − w_j) of a node.
+    /// Σ_j M_ij (w_i − w_j) of each of these nodes.
     #[inline]
-    pub fn flow(&self, node: usize, w: &[Quad]) -> Vec3 {
-        let (own, mut sum) = (w[node].0, [0.0; 4]);
-        for link in self.links(node) {
-            let (m, w) = (self.values[link.pair as usize], w[link.node as usize].0);
-            for k in 0..4 {
-                sum[k] += m * (own[k] - w[k]);
-            }
-        }
-        Quad(sum).vector()
+    pub fn flows(&self, simd: Simd, nodes: Range<usize>, w: &[Quad], sums: &mut [Quad]) {
+        flows(simd, self, nodes, w, sums);
     }
 
-    #[inline]
+    #[inline(always)]
     fn links(&self, node: usize) -> &[Link] {
         &self.linked[self.links[node] as usize..self.links[node + 1] as usize]
+    }
+}
+
+for_each_simd! {
+    fn products(matrix: &ConsistentMass, nodes: Range<usize>, w: &[Quad], sums: &mut [Quad]) {
+        for (node, to) in nodes.zip(sums) {
+            let mut sum = w[node].0.map(|x| x * matrix.diagonal[node]);
+            for link in matrix.links(node) {
+                let (m, w) = (matrix.values[link.pair as usize], w[link.node as usize].0);
+                for k in 0..4 {
+                    sum[k] += m * w[k];
+                }
+            }
+            *to = Quad(sum);
+        }
+    }
+}
+
+for_each_simd! {
+    fn flows(matrix: &ConsistentMass, nodes: Range<usize>, w: &[Quad], sums: &mut [Quad]) {
+        for (node, to) in nodes.zip(sums) {
+            let (own, mut sum) = (w[node].0, [0.0; 4]);
+            for link in matrix.links(node) {
+                let (m, w) = (matrix.values[link.pair as usize], w[link.node as usize].0);
+                for k in 0..4 {
+                    sum[k] += m * (own[k] - w[k]);
+                }
+            }
+            *to = Quad(sum);
+        }
     }
 }
 
@@ -238,9 +256,12 @@ mod tests {
         ];
         let sum: f64 = others.iter().map(|(_, m)| m).sum();
         let moment: f64 = others.iter().map(|(n, m)| f64::from(*n) * m).sum();
-        let product = mass.product(4, &w);
-        assert_eq!((product.x, product.y), (sum + 500.0, moment + 2000.0));
-        let flow = mass.flow(4, &w);
-        assert_eq!((flow.x, flow.y), (0.0, 4.0 * sum - moment));
+        for simd in Simd::NAMES.iter().filter_map(|name| Simd::named(name)) {
+            let mut sums = [Quad::default(); 2];
+            mass.products(simd, 3..5, &w, &mut sums);
+            assert_eq!(sums[1].0[..2], [sum + 500.0, moment + 2000.0]);
+            mass.flows(simd, 3..5, &w, &mut sums);
+            assert_eq!(sums[1].0[..2], [0.0, 4.0 * sum - moment]);
+        }
     }
 }

@@ -22,6 +22,8 @@ pub(super) struct Motion {
     work: Lane,
     /// 1 where a particle has left its element as it was.
     left: Lane,
+    /// Whether any has.
+    some_left: bool,
 }
 
 impl Default for Motion {
@@ -31,6 +33,7 @@ impl Default for Motion {
             position: vector,
             work: Lane::of(0.0),
             left: Lane::of(0.0),
+            some_left: false,
         }
     }
 }
@@ -53,6 +56,7 @@ for_each_simd! {
             let x = Vec3::from_array(get(&motion.position, l));
             motion.left[l] = either(is_inside(shapes.at(l, x)), 0.0, 1.0);
         }
+        motion.look_who_left();
     }
 }
 
@@ -101,6 +105,11 @@ impl Motion {
         self.left[l] = either(stays, 0.0, 1.0);
     }
 
+    #[inline(always)]
+    pub fn look_who_left(&mut self) {
+        self.some_left = any(&*self.left);
+    }
+
     /// Finds the elements of the particles of a slot that have left theirs. Those that have come to another one are
     /// not here any more, and `gone` is told their lanes.
     #[inline]
@@ -112,7 +121,7 @@ impl Motion {
         crossing: &mut Crossing,
         mut gone: impl FnMut(usize),
     ) {
-        if !any(&self.left[..slot.len()]) {
+        if !self.some_left {
             return;
         }
         for (l, p) in slot.enumerate() {

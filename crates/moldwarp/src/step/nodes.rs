@@ -25,19 +25,24 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         absorbing,
         gravity,
         reference,
+        shared,
+        contacts,
         ..
     } = sim;
     let weighs = reference.is_some();
     let (active, gravity, portions) = (&*active, *gravity, &cells.portions);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
-    let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (
+    // Else other nodes and bodies have a say.
+    let alone = contacts.rigid.is_empty() && contacts.meetings.is_empty();
+    let items = (0..nodes.len(), &mut nodes[..], &mut shared.given[..]);
+    let booked = fold(items, BLOCK, &|(slots, nodes, given): (
         Range<usize>,
         &mut [Node],
+        &mut [Quad],
     )| {
-        let mut sums = [Quad::default(); BLOCK];
+        let (mut sums, mut books) = ([Quad::default(); BLOCK], Books::default());
         (portions.nodes).own_sums(slots.clone(), &mut [&mut sums]);
-        for ((slot, node), &sum) in slots.zip(nodes).zip(&sums) {
+        for (((slot, node), &sum), given) in slots.zip(nodes).zip(&sums).zip(given) {
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
                 *node = Node {
@@ -45,6 +50,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                     moved: grid.1,
                     ..Node::default()
                 };
+                *given = Quad::default();
                 continue;
             }
             let mesh_node = active.nodes[slot];
@@ -77,34 +83,49 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 node.acceleration = constraint.free * node.acceleration + held;
             }
             node.reaction = node.acceleration * node.mass - force;
-        }
-    });
-    rigid::predict(sim, h);
-    contact::kick(sim, before, after);
-    book(sim, before > 0.0);
-}
-
-/// Sums of the forces, and half their work in the last drift if there has been one; accelerations are given to the nodes
-/// around.
-fn book(sim: &mut Simulation, drifted: bool) {
-    let gravity = sim.gravity;
-    let items = (&sim.nodes[..], &mut sim.shared.given[..]);
-    let (work, forces) = fold(items, BLOCK, &|(nodes, given): (&[Node], &mut [Quad])| {
-        let (mut work, mut forces) = (DriftWork::default(), Forces::default());
-        for (node, given) in nodes.iter().zip(given) {
-            *given = node.acceleration.into();
-            if node.mass == 0.0 {
-                continue;
-            }
-            forces.add(node, gravity);
-            if drifted {
-                work.add(node, gravity);
+            if alone {
+                book(node, given, gravity, before > 0.0, &mut books);
             }
         }
-        (work, forces)
+        books
     });
+    let (work, forces) = if alone {
+        booked
+    } else {
+        rigid::predict(sim, h);
+        contact::kick(sim, before, after);
+        book_all(sim, before > 0.0)
+    };
     sim.ledger.kick(work);
     sim.watch.forces = forces;
+}
+
+/// Half the work of the nodes' forces in the last drift, and their sums.
+type Books = (DriftWork, Forces);
+
+/// Books a node's forces, and gives its acceleration to the nodes around.
+#[inline]
+fn book(node: &Node, given: &mut Quad, gravity: Vec3, drifted: bool, books: &mut Books) {
+    *given = node.acceleration.into();
+    if node.mass == 0.0 {
+        return;
+    }
+    books.1.add(node, gravity);
+    if drifted {
+        books.0.add(node, gravity);
+    }
+}
+
+fn book_all(sim: &mut Simulation, drifted: bool) -> Books {
+    let gravity = sim.gravity;
+    let items = (&sim.nodes[..], &mut sim.shared.given[..]);
+    fold(items, BLOCK, &|(nodes, given): (&[Node], &mut [Quad])| {
+        let mut books = Books::default();
+        for (node, given) in nodes.iter().zip(given) {
+            book(node, given, gravity, drifted, &mut books);
+        }
+        books
+    })
 }
 
 /// −Σ S ∇N_i of a node, N, and the mass whose weight pulls at it where there is a reference stress, kg.

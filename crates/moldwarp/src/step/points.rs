@@ -4,7 +4,7 @@
 //! One pass in place of four, since a particle's numbers come from memory, which takes about as long as to compute with
 //! them.
 
-use super::corners::NO_CORNERS;
+use super::corners::{NO_CORNERS, TileNodes};
 use super::motion::{Crossing, Motion, Search};
 use super::shapes::Shapes;
 use super::state::Summed;
@@ -14,7 +14,7 @@ use super::sums::{self, Arrays as SumArrays, Asked, Carried, Counted, Given as S
 use super::to_particles::{Given, Kick, Pending};
 use crate::Vec3;
 use crate::lanes::{
-    self, AHEAD, ByTile, Columns, Held, LANES, Lane, alike, for_each_simd, get, held, only,
+    self, AHEAD, ByTile, Columns, Held, LANES, Lane, Simd, for_each_simd, get, held, only,
     prefetch, prefetch_bodies, set,
 };
 use crate::parallel::Smallest;
@@ -108,12 +108,13 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         // Work of the particles' stresses in the halves of the drift.
         let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
         for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
-            let nodes = active.tile_nodes(number);
+            let nodes = TileNodes::new(simd, active.tile_nodes(number));
             shapes.enter(simd, &mut corners, nodes, &shared.places);
             deformation.enter(simd, &mut corners, &shapes, nodes, shared, smoothing);
             stress.points.enter();
             own_work(simd, &deformation, records.sum, &mut begun);
             kick.enter(simd, &mut corners, &given, nodes, &shapes);
+
             if stays {
                 sums.enter(&mut records);
             }
@@ -124,11 +125,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let bodies = &body[slot.clone()];
-                let alike = alike(bodies);
-                arrays.prefetch(slot.end - first + AHEAD);
-                prefetch(&[mass], slot.end + AHEAD);
-                prefetch_bodies(body, slot.end + AHEAD);
-                stress.look_up(bodies, alike, &arrays.stressed, start);
+                let whose = stress.whose.of(bodies);
                 begin(
                     simd,
                     &mut motion,
@@ -140,8 +137,13 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     (&kick, given.pending),
                     start,
                     held(lanes),
+                    whose.opening,
                 );
-                stress.update(&deformation, slot.start, bodies, alike);
+                // All at once they would wait for each other.
+                arrays.position.prefetch(start + AHEAD);
+                arrays.velocity.prefetch(start + AHEAD);
+                stress.update(&deformation, slot.start, bodies, whose);
+                arrays.stressed.0.prefetch(start + AHEAD);
                 end(
                     simd,
                     &mut motion,
@@ -152,10 +154,22 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     &cells,
                     gravity,
                 );
+                keep(
+                    simd,
+                    &mut motion,
+                    sums.next(),
+                    &mut stress.points,
+                    &mut arrays,
+                    simd,
+                    start,
+                    lanes,
+                    whose.opening,
+                );
+                arrays.stressed.1.prefetch(start + AHEAD);
+                arrays.stressed.2.prefetch(start + AHEAD);
+                prefetch(&[mass], slot.start + AHEAD);
+                prefetch_bodies(body, slot.start + AHEAD);
                 stress.book_plastic();
-                (stress.points).keep(simd, &mut arrays.stressed, start, lanes);
-                (arrays.position).store(simd, &motion.position, start, lanes);
-                (arrays.velocity).store(simd, &sums.next().velocity, start, lanes);
                 if !stays {
                     continue;
                 }
@@ -170,8 +184,9 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     volume: &stress.points.volume,
                     stress: &stress.points.increment.stress,
                     state: &stress.points.increment.state,
+                    open: stress.points.open,
                 };
-                sums.add(&asked, &points, bodies, alike, &mut records);
+                sums.add(&asked, &points, bodies, whose, &mut records);
             }
             if stays {
                 let pairs = pairs.tile_pairs(number);
@@ -207,18 +222,6 @@ struct Own<'a> {
     velocity: Columns<'a, 3>,
 }
 
-impl Own<'_> {
-    #[inline(always)]
-    fn prefetch(&self, start: usize) {
-        let (stresses, states, volumes) = &self.stressed;
-        self.position.prefetch(start);
-        self.velocity.prefetch(start);
-        stresses.prefetch(start);
-        states.prefetch(start);
-        volumes.prefetch(start);
-    }
-}
-
 /// The cells of a tile.
 struct Cells<'a> {
     shapes: &'a Shapes,
@@ -237,6 +240,7 @@ for_each_simd! {
         kick: (&Kick, Option<Pending>),
         start: usize,
         held: &Held,
+        opening: Option<usize>,
     ) {
         motion.fetch(&arrays.position, carried, mass, start, held);
         let mut v = [Lane::of(0.0); 3];
@@ -255,6 +259,7 @@ for_each_simd! {
         for l in 0..LANES {
             points.turn(cells.deformation, l);
         }
+        points.look_for_open(opening);
     }
 }
 
@@ -274,5 +279,25 @@ for_each_simd! {
             kick.count(l, carried.mass[l], Vec3::from_array(get(&carried.velocity, l)));
             motion.go_along(cells.shapes, cells.deformation, gravity, carried, l);
         }
+    }
+}
+
+for_each_simd! {
+    /// Copies what is new to the particles of a slot.
+    fn keep(
+        motion: &mut Motion,
+        carried: &Carried,
+        points: &mut Points,
+        arrays: &mut Own,
+        simd: Simd,
+        start: usize,
+        lanes: usize,
+        opening: Option<usize>,
+    ) {
+        motion.look_who_left();
+        points.look_for_open(opening);
+        points.keep(simd, &mut arrays.stressed, start, lanes);
+        arrays.position.keep(simd, &motion.position, start, lanes);
+        arrays.velocity.keep(simd, &carried.velocity, start, lanes);
     }
 }

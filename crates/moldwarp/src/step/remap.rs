@@ -6,8 +6,10 @@
 //! symmetry is a mirror.
 
 use super::corners::Quad;
+use super::correction::{self, Change};
 use super::state::moved;
-use super::{BLOCK, Node, contact, correction};
+use super::{BLOCK, Node, Shared, contact};
+use crate::Vec3;
 use crate::measure::DriftWork;
 use crate::parallel::fold;
 use crate::simulation::Simulation;
@@ -19,10 +21,13 @@ pub(super) fn run(sim: &mut Simulation, dt: f64) {
         contact::remap(sim, |node| &mut node.average);
         correction::give(&sim.nodes, &mut sim.shared.given, |node| node.average);
     }
-    correct(sim);
-    contact::remap(sim, |node| &mut node.grid_velocity);
-    move_nodes(sim, dt);
-    contact::work(sim);
+    let alone = sim.contacts.meetings.is_empty();
+    correct(sim, alone.then_some(dt));
+    if !alone {
+        contact::remap(sim, |node| &mut node.grid_velocity);
+        move_nodes(sim, dt);
+        contact::work(sim);
+    }
     let Simulation {
         active,
         nodes,
@@ -63,8 +68,8 @@ fn hold(sim: &mut Simulation) {
     });
 }
 
-/// v_i with constraints applied again.
-fn correct(sim: &mut Simulation) {
+/// v_i with constraints applied again; in a step of `dt` where no contact changes them, nodes move.
+fn correct(sim: &mut Simulation, dt: Option<f64>) {
     let Simulation {
         plan,
         active,
@@ -72,25 +77,37 @@ fn correct(sim: &mut Simulation) {
         shared,
         cells,
         constraints,
+        ledger,
+        gravity,
+        simd,
         ..
     } = sim;
-    let (active, matrix, constraints) = (&*active, &cells.mass, &*constraints);
-    let theta = correction::theta(plan.numerics.mass);
-    let given = &shared.given[..];
-    let items = (0..nodes.len(), &mut nodes[..]);
-    fold(items, BLOCK, &|(slots, nodes): (
+    let (active, constraints, gravity) = (&*active, &*constraints, *gravity);
+    let Shared { given, moved, .. } = shared;
+    let change = Change::new(plan.numerics.mass, &cells.mass, *simd, given);
+    let items = (0..nodes.len(), &mut nodes[..], &mut moved[..]);
+    let work = fold(items, BLOCK, &|(slots, nodes, moved): (
         Range<usize>,
         &mut [Node],
+        &mut [Quad],
     )| {
-        for (slot, node) in slots.zip(nodes) {
-            let change = correction::change(theta, matrix, slot, node.mass, given);
-            node.grid_velocity = node.average + change;
+        let (mut work, mut flows) = (DriftWork::default(), [Quad::default(); BLOCK]);
+        change.flows(slots.clone(), &mut flows);
+        for (((slot, node), moved), &flow) in slots.zip(nodes).zip(moved).zip(&flows) {
+            node.grid_velocity = node.average + change.at(node.mass, flow);
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =
                     constraint.free * node.grid_velocity + constraints.prescribed(constraint);
             }
+            if let Some(dt) = dt {
+                go(node, moved, dt, gravity, &mut work);
+            }
         }
+        work
     });
+    if dt.is_some() {
+        ledger.drift(work);
+    }
 }
 
 /// Δu_i, and the first half of its work.
@@ -110,11 +127,16 @@ fn move_nodes(sim: &mut Simulation, dt: f64) {
     )| {
         let mut work = DriftWork::default();
         for (node, moved) in nodes.iter_mut().zip(moved) {
-            node.moved = node.grid_velocity * dt;
-            *moved = node.moved.into();
-            work.add(node, gravity);
+            go(node, moved, dt, gravity, &mut work);
         }
         work
     });
     ledger.drift(work);
+}
+
+#[inline]
+fn go(node: &mut Node, moved: &mut Quad, dt: f64, gravity: Vec3, work: &mut DriftWork) {
+    node.moved = node.grid_velocity * dt;
+    *moved = node.moved.into();
+    work.add(node, gravity);
 }

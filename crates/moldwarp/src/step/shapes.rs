@@ -3,7 +3,7 @@
 //! They are found anew wherever they are needed: their numbers would take longer to come from memory than the places of
 //! the nodes, which the cache holds, take to make them.
 
-use super::corners::{Corners, Quad, all_corners, load_nodes};
+use super::corners::{Corners, Quad, TileNodes, all_corners, load_nodes};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, Simd, for_each_simd, get, set};
 use crate::mesh::{barycentric, tetrahedron_gradients};
@@ -51,7 +51,7 @@ impl Shapes {
         &mut self,
         simd: Simd,
         corners: &mut Corners,
-        nodes: &[[u32; 4]; LANES],
+        nodes: TileNodes,
         places: &[Quad],
     ) {
         load_nodes(simd, corners, nodes, places);

@@ -180,11 +180,23 @@ impl CellSums {
         .chain(&mut self.stress)
     }
 
-    /// The same to look at.
-    fn all(&self) -> impl Iterator<Item = &Lane> {
-        [&self.mass, &self.volume, &self.solid, &self.closed]
-            .into_iter()
-            .chain(&self.stress)
+    /// Adds what a lane of others has.
+    #[inline]
+    fn add_lane(&mut self, to: usize, others: &CellSums, from: usize) {
+        let CellSums {
+            mass,
+            volume,
+            solid,
+            closed,
+            stress,
+        } = self;
+        mass[to] += others.mass[from];
+        volume[to] += others.volume[from];
+        solid[to] += others.solid[from];
+        closed[to] += others.closed[from];
+        for (sum, more) in stress.iter_mut().zip(&others.stress) {
+            sum[to] += more[from];
+        }
     }
 }
 
@@ -320,7 +332,7 @@ impl Cells {
                     continue;
                 }
                 let tile = tile - tiles.start;
-                add_lane(sums[tile].lanes(), to, given[from_tile].all(), from);
+                sums[tile].add_lane(to, &given[from_tile], from);
                 let (Some(medium), Some(given)) = (&mut medium, given_medium) else {
                     continue;
                 };

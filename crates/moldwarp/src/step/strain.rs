@@ -1,10 +1,13 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
 use super::collect::Shares;
-use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_and_sum, load_nodes};
+use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_and_sum, load_nodes};
 use super::shapes::Shapes;
 use super::{CellFill, CellForce, CellSums, Cells, Shared, smoothing};
-use crate::lanes::{self, LANES, Lane, Simd, VoigtLanes, either, for_each_simd, get, set};
+use crate::lanes::{
+    self, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, either, for_each_simd, get,
+    prefetch_record, set,
+};
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3, tensor};
@@ -78,7 +81,7 @@ impl Deformation {
         simd: Simd,
         corners: &mut Corners,
         shapes: &Shapes,
-        nodes: &[[u32; 4]; LANES],
+        nodes: TileNodes,
         shared: &Shared,
         smoothing: Smoothing,
     ) {
@@ -211,9 +214,10 @@ fn gradients(sim: &mut Simulation) {
         let mut share = shares.begin();
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
         for tile in tiles {
-            let nodes = active.tile_nodes(tile);
+            let nodes = TileNodes::new(simd, active.tile_nodes(tile));
             shapes.enter(simd, &mut moved, nodes, &shared.places);
             load_nodes(simd, &mut moved, nodes, &shared.moved);
+            prefetch_record(sums, tile + RECORDS_AHEAD);
             let weighed = Weighed {
                 shapes: &shapes,
                 sum: &sums[tile],

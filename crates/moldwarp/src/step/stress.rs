@@ -8,7 +8,7 @@ pub(super) use external::ask;
 use super::strain::{Deformation, growth};
 use crate::Mat3;
 use crate::lanes::{
-    self, Columns, Held, LANES, Lane, Simd, any, either, for_each_simd, get, only, set,
+    self, Columns, Held, LANES, Lane, Simd, alike, either, for_each_simd, get, only, set,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
 use crate::parallel::{Smallest, Sum};
@@ -26,6 +26,8 @@ pub(super) struct Points {
     separated: Lane,
     /// Whether any is.
     apart: bool,
+    /// Whether any may have opened.
+    pub open: bool,
     /// Whether strains are those of the cells.
     alike: bool,
     /// Volume in the middle of the step, m³.
@@ -36,9 +38,84 @@ pub(super) struct Points {
     left_out: Lane,
 }
 
+/// The bodies of a plan, and what there is to know of the particles of a slot.
+pub(super) struct Bodies<'a> {
+    plan: &'a Plan,
+    /// Of the body that was met last.
+    last: Whose<'a>,
+}
+
+/// Of which body the particles of a slot are.
+#[derive(Clone, Copy)]
+pub(super) struct Whose<'a> {
+    /// None, if they are of several.
+    pub body: Option<u16>,
+    /// Theirs, if they are of one body.
+    model: Option<&'a Material>,
+    /// The state variable that is greater than zero where one has opened.
+    pub opening: Option<usize>,
+    /// Whether none of them can open.
+    pub closed: bool,
+}
+
+impl<'a> Bodies<'a> {
+    pub fn new(plan: &'a Plan) -> Bodies<'a> {
+        let several = Whose {
+            body: None,
+            model: None,
+            opening: None,
+            closed: false,
+        };
+        let mut bodies = Bodies {
+            plan,
+            last: several,
+        };
+        if let [_] = plan.bodies[..] {
+            bodies.of_one(0);
+        }
+        bodies
+    }
+
+    #[inline]
+    pub fn model(&self, body: u16) -> &'a Material {
+        &self.plan.materials[self.plan.bodies[usize::from(body)].material].model
+    }
+
+    fn of_one(&mut self, body: u16) -> Whose<'a> {
+        let model = self.model(body);
+        self.last = Whose {
+            body: Some(body),
+            model: Some(model),
+            opening: model.opening(),
+            closed: model.opening().is_none(),
+        };
+        self.last
+    }
+
+    /// Whose particles these are.
+    #[inline]
+    pub fn of(&mut self, bodies: &[u16]) -> Whose<'a> {
+        if self.plan.bodies.len() == 1 {
+            return self.last;
+        }
+        if !alike(bodies) {
+            return Whose {
+                body: None,
+                model: None,
+                opening: None,
+                closed: false,
+            };
+        }
+        if self.last.body == Some(bodies[0]) {
+            return self.last;
+        }
+        self.of_one(bodies[0])
+    }
+}
+
 /// What the stage does to cells one after another.
 pub(super) struct Stresses<'a> {
-    plan: &'a Plan,
+    pub whose: Bodies<'a>,
     answers: &'a Answers,
     simd: Simd,
     pub points: Points,
@@ -56,7 +133,7 @@ pub(super) struct Booked {
 impl<'a> Stresses<'a> {
     pub fn new(plan: &'a Plan, answers: &'a Answers, simd: Simd) -> Stresses<'a> {
         Stresses {
-            plan,
+            whose: Bodies::new(plan),
             answers,
             simd,
             points: Points::default(),
@@ -67,27 +144,19 @@ impl<'a> Stresses<'a> {
         }
     }
 
-    /// Finds out which particles of a slot are separated; `alike` if they are all of one body.
-    #[inline]
-    pub fn look_up(&mut self, body: &[u16], alike: bool, arrays: &Arrays, start: usize) {
-        let plan = self.plan;
-        let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
-        self.points.look_up(body, alike, model, arrays, start);
-    }
-
     /// New stresses and state variables of the particles of a slot of these cells, whose stresses have turned.
     #[inline]
-    pub fn update(&mut self, own: &Deformation, place: usize, body: &[u16], alike: bool) {
+    pub fn update(&mut self, own: &Deformation, place: usize, body: &[u16], whose: Whose<'a>) {
         let Stresses {
-            plan,
+            whose: bodies,
             answers,
             simd,
             points,
             ..
         } = self;
-        let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
+        points.find_separated(body, whose, bodies);
         points.strain(*simd, own);
-        points.update(*simd, body, alike, model, (answers, place));
+        points.update(*simd, body, whose, bodies, (answers, place));
     }
 
     /// Books what is plastic, after the rest.
@@ -113,6 +182,7 @@ impl Default for Points {
             volume: Lane::of(0.0),
             separated: Lane::of(0.0),
             apart: false,
+            open: true,
             alike: false,
             middle: Lane::of(0.0),
             growth: Lane::of(1.0),
@@ -127,32 +197,31 @@ impl Points {
         self.alike = false;
     }
 
+    /// Finds out whether any particle that is here may have opened.
+    #[inline(always)]
+    pub fn look_for_open(&mut self, opening: Option<usize>) {
+        self.open = true;
+        if let Some(k) = opening {
+            let (state, volume) = (&self.increment.state[k], &self.volume);
+            let open = |l: usize| (volume[l] > 0.0) & (state[l] > 0.0);
+            self.open = (0..LANES).fold(false, |any, l| any | open(l));
+        }
+    }
+
     /// Finds out which particles are separated.
     #[inline]
-    fn look_up<'m>(
-        &mut self,
-        body: &[u16],
-        alike: bool,
-        model: impl Fn(u16) -> &'m Material,
-        (stresses, states, _): &Arrays,
-        start: usize,
-    ) {
-        let lanes = body.len();
+    pub fn find_separated(&mut self, body: &[u16], whose: Whose, bodies: &Bodies) {
         self.apart = false;
-        if alike {
-            let open = |k: usize| any(&states.column(k)[start..start + lanes]);
-            if !model(body[0]).opening().is_some_and(open) {
-                return;
-            }
+        if whose.closed || !self.open {
+            return;
         }
         self.separated.fill(0.0);
         for (l, &body) in body.iter().enumerate() {
-            let model = model(body);
-            let p = start + l;
-            if model.opening().is_some_and(|k| states.at(k, p) > 0.0) {
-                let stress = std::array::from_fn(|k| stresses.at(k, p));
-                let state = std::array::from_fn(|k| states.at(k, p));
-                let separated = model.is_separated(&stress, &state);
+            let model = bodies.model(body);
+            let state = get(&self.increment.state, l);
+            if model.opening().is_some_and(|k| state[k] > 0.0) {
+                // (Whether a stress has turned makes no difference.)
+                let separated = model.is_separated(&get(&self.increment.before, l), &state);
                 self.separated[l] = f64::from(u8::from(separated));
                 self.apart |= separated;
             }
@@ -193,28 +262,28 @@ impl Points {
 
     /// New stresses, where materials meet one material after the other.
     #[inline]
-    fn update<'m>(
+    fn update(
         &mut self,
         simd: Simd,
         body: &[u16],
-        alike: bool,
-        model: impl Fn(u16) -> &'m Material,
+        whose: Whose,
+        bodies: &Bodies,
         (answers, place): (&Answers, usize),
     ) {
-        let (first, lanes) = (body[0], body.len());
+        let lanes = body.len();
         let update = |model: &Material, all: &mut Strained| match model {
             Material::External(_) => answers.give(all, place, lanes),
             _ => model.update_lanes(simd, all, lanes),
         };
-        if alike {
-            return update(model(first), &mut self.increment);
+        if let Some(model) = whose.model {
+            return update(model, &mut self.increment);
         }
         let before = self.increment.clone();
         let mut done = [false; LANES];
         (self.increment.plastic, self.increment.changed) = (true, true);
         while let Some(next) = (0..lanes).find(|&l| !done[l]) {
             let mut all = before.clone();
-            update(model(body[next]), &mut all);
+            update(bodies.model(body[next]), &mut all);
             for l in (0..lanes).filter(|&l| body[l] == body[next]) {
                 set(&mut self.increment.stress, l, get(&all.stress, l));
                 set(&mut self.increment.state, l, get(&all.state, l));
@@ -244,14 +313,14 @@ impl Points {
     }
 
     /// Copies what is new to the particles.
-    #[inline]
+    #[inline(always)]
     pub fn keep(&self, simd: Simd, to: &mut Arrays, start: usize, lanes: usize) {
         let (stresses, states, volumes) = to;
-        stresses.store(simd, &self.increment.stress, start, lanes);
+        stresses.keep(simd, &self.increment.stress, start, lanes);
         if self.increment.changed {
-            states.store(simd, &self.increment.state, start, lanes);
+            states.keep(simd, &self.increment.state, start, lanes);
         }
-        volumes.store(simd, std::array::from_ref(&self.volume), start, lanes);
+        volumes.keep(simd, std::array::from_ref(&self.volume), start, lanes);
     }
 }
 

@@ -4,15 +4,18 @@
 //! not know, or all of it, is made up for here.
 
 use super::collect::{Cut, Share, Shares};
-use super::corners::{Corners, NO_CORNERS, Quad, all_corners, corner, load_nodes, set_corner};
+use super::corners::{
+    Corners, NO_CORNERS, Quad, TileNodes, all_corners, corner, load_nodes, set_corner,
+};
 use super::mass::PAIRS;
 use super::shapes::Shapes;
 use super::state::Summed;
+use super::stress::{Bodies, Whose};
 use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference, strain};
 use crate::Vec3;
 use crate::lanes::{
-    self, ByTile, Contents, Held, LANES, Lane, Simd, VoigtLanes, alike, any, for_each_simd, get,
-    held, load, load_one, only, set,
+    self, ByTile, Contents, Held, LANES, Lane, Simd, VoigtLanes, any, for_each_simd, get, held,
+    load, load_one, only, set,
 };
 use crate::material::STATE_SIZE;
 use crate::parallel::Split;
@@ -109,6 +112,8 @@ pub(super) struct Counted<'a> {
     pub volume: &'a Lane,
     pub stress: &'a VoigtLanes,
     pub state: &'a [Lane; STATE_SIZE],
+    /// Whether any may have opened.
+    pub open: bool,
 }
 
 for_each_simd! {
@@ -247,10 +252,10 @@ impl Sums {
         asked: &Asked,
         points: &Counted,
         bodies: &[u16],
-        alike: bool,
+        whose: Whose,
         records: &mut Records,
     ) {
-        self.look_up(asked, points, bodies, alike);
+        self.look_up(asked, points, bodies, whose);
         let sum = &mut *records.sum;
         if !self.closed && !self.opened {
             self.opened = true;
@@ -299,7 +304,7 @@ impl Sums {
         simd: Simd,
         tile: Contents,
         records: &mut Records,
-        nodes: &[[u32; 4]; LANES],
+        nodes: TileNodes,
         pairs: &[[u32; 6]; LANES],
         (to_nodes, to_pairs): &mut Giving,
     ) {
@@ -314,7 +319,7 @@ impl Sums {
         to_nodes.give(simd, nodes, &self.momentum, &self.mass);
         let alike = [&sum.solid, &sum.mass];
         to_nodes.give_alike(simd, nodes, alike, Some(&self.squares));
-        to_pairs.give_pairs(pairs, &self.pairs);
+        to_pairs.give_pairs(simd, pairs, &self.pairs);
         tile.gather(sum.lanes());
         if let Some(medium) = &mut records.medium {
             tile.gather(medium.lanes());
@@ -328,25 +333,20 @@ impl Sums {
 
     /// What materials say of the particles of a slot.
     #[inline]
-    fn look_up(&mut self, asked: &Asked, points: &Counted, bodies: &[u16], alike: bool) {
+    fn look_up(&mut self, asked: &Asked, points: &Counted, bodies: &[u16], whose: Whose) {
         let (plan, elasticity) = (asked.plan, asked.elasticity);
         let model = |body: u16| &plan.materials[plan.bodies[usize::from(body)].material].model;
-        let (first, lanes) = (bodies[0], bodies.len());
-        if alike {
-            if self.of != Some(first) {
-                self.of = Some(first);
-                let moduli = elasticity[usize::from(first)];
-                self.elasticity = moduli.map(Lane::of);
-            }
-        } else {
-            self.of = None;
-            for (l, &body) in bodies.iter().enumerate() {
-                set(&mut self.elasticity, l, elasticity[usize::from(body)]);
+        match whose.body {
+            Some(_) if self.of == whose.body => {}
+            Some(body) => self.elasticity = elasticity[usize::from(body)].map(Lane::of),
+            None => {
+                for (l, &body) in bodies.iter().enumerate() {
+                    set(&mut self.elasticity, l, elasticity[usize::from(body)]);
+                }
             }
         }
-        let closed =
-            alike && (model(first).opening()).is_none_or(|k| !any(&points.state[k][..lanes]));
-        if closed {
+        self.of = whose.body;
+        if whose.closed || !points.open {
             if !self.closed {
                 self.closed = true;
                 self.shares = [Lane::of(1.0); 2];
@@ -488,6 +488,7 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
         let tiles = block.each();
         let (arrays, (to_nodes, to_pairs)) = block.cells;
         let (mut side, mut sums) = (Side::default(), Sums::default());
+        let mut bodies = Bodies::new(asked.plan);
         let mut giving = match more {
             true => (to_nodes.go_on(), to_pairs.go_on()),
             false => (to_nodes.begin(), to_pairs.begin()),
@@ -495,7 +496,8 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
         let (mut moved, mut work) = (NO_CORNERS, Lane::of(0.0));
         let mut shapes = Shapes::default();
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
-            let (nodes, pairs) = (active.tile_nodes(number), mass.tile_pairs(number));
+            let nodes = TileNodes::new(asked.simd, active.tile_nodes(number));
+            let pairs = mass.tile_pairs(number);
             shapes.enter(asked.simd, &mut moved, nodes, &shared.places);
             sums.enter(&mut records);
             for slot in tile.slots() {
@@ -508,14 +510,17 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
                     &shapes,
                     held(slot.len()),
                 );
+                let body = &particles.body[slot];
+                let whose = bodies.of(body);
+                let may_open = |k: usize| any(&side.state[k][..body.len()]);
                 let points = Counted {
                     position: &side.position,
                     volume: &side.volume,
                     stress: &side.stress,
                     state: &side.state,
+                    open: whose.opening.is_none_or(may_open),
                 };
-                let bodies = &particles.body[slot];
-                sums.add(&asked, &points, bodies, alike(bodies), &mut records);
+                sums.add(&asked, &points, body, whose, &mut records);
             }
             sums.leave(asked.simd, tile, &mut records, nodes, pairs, &mut giving);
             if drifted {

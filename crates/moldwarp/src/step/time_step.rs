@@ -1,6 +1,6 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
-use super::corners::NO_CORNERS;
+use super::corners::{NO_CORNERS, TileNodes};
 use super::shapes::Shapes;
 use super::{CellFill, CellMedium, CellSums, correction};
 use crate::Vec3;
@@ -143,7 +143,8 @@ fn shortest_at(sim: &Simulation) -> Vec3 {
     let mut corners = NO_CORNERS;
     let mut shortest = (f64::INFINITY, 0);
     for tile in 0..active.own_tiles() {
-        shapes.enter(*simd, &mut corners, active.tile_nodes(tile), &shared.places);
+        let nodes = TileNodes::new(*simd, active.tile_nodes(tile));
+        shapes.enter(*simd, &mut corners, nodes, &shared.places);
         let (sum, fill) = (&cells.sums[tile], &cells.fills[tile]);
         steps.add(*simd, &limits, &shapes, sum, cells.medium.get(tile), fill);
         for (l, &step) in steps.own.iter().enumerate() {

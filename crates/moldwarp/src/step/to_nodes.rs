@@ -1,12 +1,17 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
 use super::collect::{Share, Shares};
-use super::corners::{self, Corners, NO_CORNERS, Quad, all_corners, load_nodes, set_corner};
+use super::corners::{
+    self, Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes, set_corner,
+};
 use super::shapes::Shapes;
 use super::time_step::{Limits, Steps};
 use super::{Active, BLOCK, CellFill, CellForce, CellMedium, CellSums, Cells, Node};
 use super::{smoothing, strain, sums};
-use crate::lanes::{self, LANES, Lane, Simd, either, for_each_simd, get, lane_of, set};
+use crate::lanes::{
+    self, LANES, Lane, RECORDS_AHEAD, Simd, either, for_each_simd, get, lane_of, prefetch_record,
+    set,
+};
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{Smallest, fold};
@@ -156,7 +161,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             let (mut shapes, mut steps) = (Shapes::default(), Steps::default());
             let mut forces = forces.map(|forces| forces.iter_mut());
             for (tile, fill) in range.zip(fills) {
-                let nodes = active.tile_nodes(tile);
+                let nodes = TileNodes::new(simd, active.tile_nodes(tile));
                 let kept = forces.as_mut().and_then(|forces| forces.next());
                 let force = kept.unwrap_or(&mut passing);
                 for l in 0..LANES {
@@ -167,6 +172,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 corners::sum_nodes(&mut fill.density, nodes, &shared.density);
                 shapes.enter(simd, &mut pushed, nodes, &shared.places);
                 let sum = &sums[tile];
+                prefetch_record(sums, tile + RECORDS_AHEAD);
                 stand_in(simd, &shapes, sum, fill, force);
                 steps.add(simd, &limits, &shapes, sum, medium.get(tile), fill);
                 if reference.is_some() {
@@ -271,7 +277,7 @@ pub(super) fn push(
     simd: Simd,
     shapes: &Shapes,
     force: &CellForce,
-    nodes: &[[u32; 4]; LANES],
+    nodes: TileNodes,
     pushed: &mut Corners,
     share: &mut Share<Quad, 1>,
 ) {

@@ -9,7 +9,7 @@
 //! and their energy Σ ½ m_p |v_p|² + h Σ m_i v_i · a_i + ½ h² Σ a_i · M_ij a_j. So particles receive their velocities
 //! when the next drift goes through them (`points.rs`), or as soon as anyone wants to see them ([`Simulation::settle`]).
 
-use super::corners::{Corners, NO_CORNERS, Quad, all_corners, load_nodes};
+use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes};
 use super::shapes::Shapes;
 use super::{BLOCK, Node, Shared, strain};
 use crate::lanes::{
@@ -80,7 +80,7 @@ impl Kick {
         simd: Simd,
         corners: &mut Corners,
         given: &Given,
-        nodes: &[[u32; 4]; LANES],
+        nodes: TileNodes,
         shapes: &Shapes,
     ) {
         let Some(pending) = given.pending else {
@@ -216,17 +216,19 @@ fn exchange(
         nodes,
         shared,
         cells,
+        simd,
         ..
     } = sim;
-    let (w, matrix) = (w(shared), &cells.mass);
+    let (w, matrix, simd) = (w(shared), &cells.mass, *simd);
     let items = (0..nodes.len(), &mut nodes[..]);
     fold(items, BLOCK, &|(slots, nodes): (
         Range<usize>,
         &mut [Node],
     )| {
-        let mut all = [0.0; 2];
-        for (slot, node) in slots.zip(nodes) {
-            let works = work(node, matrix.product(slot, w));
+        let (mut all, mut products) = ([0.0; 2], [Quad::default(); BLOCK]);
+        matrix.products(simd, slots, w, &mut products);
+        for (node, product) in nodes.iter_mut().zip(products) {
+            let works = work(node, product.vector());
             (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
         }
         all
@@ -280,7 +282,7 @@ fn settle(sim: &mut Simulation, pending: Pending) {
         let mut kick = Kick::default();
         let (mut x, mut v) = ([Lane::of(0.0); 3], [Lane::of(0.0); 3]);
         for (number, tile) in tiles {
-            let nodes = active.tile_nodes(number);
+            let nodes = TileNodes::new(simd, active.tile_nodes(number));
             shapes.enter(simd, &mut corners, nodes, places);
             kick.enter(simd, &mut corners, &given, nodes, &shapes);
             for slot in tile.slots() {

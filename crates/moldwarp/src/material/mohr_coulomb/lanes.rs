@@ -2,28 +2,23 @@
 
 use super::super::{State, Strained};
 use super::{MohrCoulomb, MohrCoulombState, YieldState, equivalent_strain};
-use crate::lanes::{
-    Held, LANES, Lane, Simd, any, either, for_each_simd, get, held, larger, only, set,
-};
+use crate::lanes::{Held, LANES, Lane, Simd, either, for_each_simd, get, held, larger, set};
 use crate::tensor::{self, Voigt};
 
 impl MohrCoulomb {
     pub(in super::super) fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
-        let (mut unsure, mut calm): (Lane, bool) = (Lane::of(0.0), true);
-        predict(simd, self, s, held(lanes), &mut unsure, &mut calm);
+        let (mut unsure, mut met) = (Lane::of(0.0), Met::default());
+        predict(simd, self, s, held(lanes), &mut unsure, &mut met);
         s.plastic = false;
-        if calm {
-            return;
-        }
-        s.changed = true;
-        if any(&s.state[2][..lanes]) {
+        s.changed = met.yielded | met.unsure | met.open;
+        if met.open {
             for l in 0..lanes {
                 if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
                     (s.plastic, unsure[l]) = (true, 0.0);
                 }
             }
         }
-        if any(&*unsure) {
+        if met.unsure {
             s.plastic |= self.return_all(simd, s, &mut unsure);
         }
         if s.plastic {
@@ -48,23 +43,36 @@ impl MohrCoulomb {
     /// Returns the predictors that are not sure; says whether any of them yields.
     fn return_all(&self, simd: Simd, s: &mut Strained, unsure: &mut Lane) -> bool {
         // In the place of what is unsure comes what has to be returned on its own.
-        let alone = unsure;
-        if !self.corners.has_cutoff() {
-            return_unsure(simd, self, s, alone);
+        let (alone, mut met) = (unsure, Met::default());
+        match self.corners.has_cutoff() {
+            true => met.unsure = true,
+            false => return_unsure(simd, self, s, alone, &mut met),
         }
-        if any(&**alone) {
-            for l in (0..LANES).filter(|&l| alone[l] > 0.0) {
-                let step = self.return_map(&get(&s.stress, l));
-                let yielding = f64::from(step.yielding as u8);
-                if yielding > 0.0 {
-                    set(&mut s.stress, l, step.stress);
-                    s.state[2][l] = (s.state[2][l] + step.opening).max(0.0);
-                    s.state[3][l] = yielding;
-                }
+        if !met.unsure {
+            return met.yielded;
+        }
+        for l in (0..LANES).filter(|&l| alone[l] > 0.0) {
+            let step = self.return_map(&get(&s.stress, l));
+            let yielding = f64::from(step.yielding as u8);
+            if yielding > 0.0 {
+                met.yielded = true;
+                set(&mut s.stress, l, step.stress);
+                s.state[2][l] = (s.state[2][l] + step.opening).max(0.0);
+                s.state[3][l] = yielding;
             }
         }
-        any(&*s.state[3])
+        met.yielded
     }
+}
+
+/// What particles side by side have been found to be, any of them.
+#[derive(Default)]
+struct Met {
+    /// Their predictors may not be admissible.
+    unsure: bool,
+    open: bool,
+    /// They have yielded, before or now.
+    yielded: bool,
 }
 
 fn state_of(state: State) -> MohrCoulombState {
@@ -77,25 +85,20 @@ fn state_of(state: State) -> MohrCoulombState {
 }
 
 for_each_simd! {
-    /// Elastic predictors, which of them may not be admissible, and whether all are and no particle is open.
-    fn predict(
-        model: &MohrCoulomb,
-        s: &mut Strained,
-        held: &Held,
-        unsure: &mut Lane,
-        calm: &mut bool,
-    ) {
-        let mut restless = Lane::of(0.0);
-        let yielded = only(held, &s.state[3]);
+    /// Elastic predictors, and which of them may not be admissible.
+    fn predict(model: &MohrCoulomb, s: &mut Strained, held: &Held, unsure: &mut Lane, met: &mut Met) {
+        let (mut yielded, mut open, mut doubts) = (false, false, false);
         for l in 0..LANES {
             let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
             set(&mut s.stress, l, trial);
-            unsure[l] = either(model.surely_elastic(&trial), 0.0, held[l]);
-            restless[l] = either(s.state[2][l] > 0.0, held[l], unsure[l]);
+            let doubt = (held[l] > 0.0) & !model.surely_elastic(&trial);
+            unsure[l] = either(doubt, 1.0, 0.0);
+            doubts |= doubt;
+            open |= (held[l] > 0.0) & (s.state[2][l] > 0.0);
+            yielded |= (held[l] > 0.0) & (s.state[3][l] > 0.0);
             s.state[3][l] = 0.0;
         }
-        *calm = !any(&*restless);
-        s.changed = any(&*yielded);
+        *met = Met { unsure: doubts, open, yielded };
     }
 }
 
@@ -127,13 +130,16 @@ impl One {
 
 for_each_simd! {
     /// Returns predictors that are `unsure`, and leaves 1 there where one has to be returned on its own, else 0.
-    fn return_unsure(model: &MohrCoulomb, s: &mut Strained, unsure: &mut Lane) {
+    fn return_unsure(model: &MohrCoulomb, s: &mut Strained, unsure: &mut Lane, met: &mut Met) {
+        let (mut odd, mut yields) = (false, false);
         for l in 0..LANES {
             let trial = get(&s.stress, l);
             let one = One::of(model, &trial);
             let returned = unsure[l] > 0.0;
             unsure[l] = either(returned & one.odd, 1.0, 0.0);
+            odd |= returned & one.odd;
             let returned = returned & !one.odd & (one.yielding > 0.0);
+            yields |= returned;
             let opened = larger(s.state[2][l] + one.opening, 0.0);
             s.state[2][l] = either(returned, opened, s.state[2][l]);
             s.state[3][l] = either(returned, one.yielding, s.state[3][l]);
@@ -141,6 +147,7 @@ for_each_simd! {
                 s.stress[k][l] = either(returned, one.stress[k], trial[k]);
             }
         }
+        (met.unsure, met.yielded) = (odd, yields);
     }
 }
 

@@ -5,11 +5,11 @@
 //! the pass then finds their answers where it would call another model. Works and volumes it books as
 //! for any other.
 
-use super::super::corners::NO_CORNERS;
+use super::super::corners::{NO_CORNERS, TileNodes};
 use super::super::shapes::Shapes;
 use super::super::strain::Deformation;
-use super::{Arrays, Points};
-use crate::lanes::{ByTile, Columns, Held, LANES, alike, for_each_simd, held, load};
+use super::{Arrays, Bodies, Points};
+use crate::lanes::{ByTile, Columns, Held, LANES, for_each_simd, held, load};
 use crate::material::{External, Increments, Material, Strained};
 use crate::parallel::fold;
 use crate::particles::{Particles, States, Tensors};
@@ -257,9 +257,9 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         stress.into_iter().for_each(|s| s.fill(f64::NAN));
         let (mut own, mut shapes) = (Deformation::default(), Shapes::default());
         let mut corners = NO_CORNERS;
-        let mut points = Points::default();
+        let (mut points, mut bodies) = (Points::default(), Bodies::new(plan));
         for (number, tile) in tiles {
-            let nodes = active.tile_nodes(number);
+            let nodes = TileNodes::new(simd, active.tile_nodes(number));
             shapes.enter(simd, &mut corners, nodes, &shared.places);
             own.enter(simd, &mut corners, &shapes, nodes, shared, smoothing);
             points.enter();
@@ -272,8 +272,8 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
                 {
                     continue;
                 }
-                points.look_up(body, alike(body), model, &arrays, start);
                 fetch(simd, &mut points, &arrays, &own, start, held(lanes));
+                points.find_separated(body, bodies.of(body), &bodies);
                 points.strain(simd, &own);
                 before.store(simd, &points.increment.before, start, lanes);
                 increment.store(simd, &points.increment.strain, start, lanes);
@@ -286,6 +286,9 @@ for_each_simd! {
     /// Fetches particles and turns their stresses.
     fn fetch(points: &mut Points, arrays: &Arrays, own: &Deformation, start: usize, held: &Held) {
         points.fetch(arrays, start, held);
-        (0..LANES).for_each(|l| points.turn(own, l));
+        for l in 0..LANES {
+            points.turn(own, l);
+        }
+        points.look_for_open(None);
     }
 }

@@ -1,0 +1,127 @@
+//! With AVX2: four cells at a time.
+
+use super::{Corners, Lane, Quad, TileNodes};
+use std::arch::x86_64::*;
+
+/// Rows to columns.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn transpose(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [__m256d; 4] {
+    let (ab, cd) = (_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d));
+    let (ab_odd, cd_odd) = (_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d));
+    [
+        _mm256_permute2f128_pd::<0x20>(ab, cd),
+        _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd),
+        _mm256_permute2f128_pd::<0x31>(ab, cd),
+        _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
+    ]
+}
+
+/// Four lanes, beginning with `l`, which is a multiple of four.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn four(lane: &Lane, l: usize) -> __m256d {
+    let four: &[f64; 4] = &lane.as_chunks::<4>().0[l / 4];
+    // SAFETY: there are four.
+    unsafe { _mm256_loadu_pd(four.as_ptr()) }
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn set_four(lane: &mut Lane, l: usize, four: __m256d) {
+    let to: &mut [f64; 4] = &mut lane.as_chunks_mut::<4>().0[l / 4];
+    // SAFETY: there are four.
+    unsafe { _mm256_storeu_pd(to.as_mut_ptr(), four) }
+}
+
+#[target_feature(enable = "avx2")]
+pub fn load_nodes(
+    corners: &mut Corners,
+    mut sums: Option<&mut Lane>,
+    nodes: TileNodes,
+    quads: &[Quad],
+) {
+    assert!(nodes.are_among(0, quads.len()));
+    let from = quads.as_ptr().cast::<f64>();
+    for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
+        let mut sum = _mm256_setzero_pd();
+        for i in 0..4 {
+            // SAFETY: all nodes are there.
+            let rows = unsafe {
+                [
+                    _mm256_load_pd(from.add(4 * cells[0][i] as usize)),
+                    _mm256_load_pd(from.add(4 * cells[1][i] as usize)),
+                    _mm256_load_pd(from.add(4 * cells[2][i] as usize)),
+                    _mm256_load_pd(from.add(4 * cells[3][i] as usize)),
+                ]
+            };
+            let [x, y, z, fourth] = transpose(rows[0], rows[1], rows[2], rows[3]);
+            sum = _mm256_add_pd(sum, fourth);
+            set_four(&mut corners[3 * i], 4 * k, x);
+            set_four(&mut corners[3 * i + 1], 4 * k, y);
+            set_four(&mut corners[3 * i + 2], 4 * k, z);
+        }
+        if let Some(sums) = &mut sums {
+            set_four(sums, 4 * k, sum);
+        }
+    }
+}
+
+/// # Safety
+/// The node must be there.
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn add(to: &mut [Quad], at: usize, more: __m256d) {
+    // SAFETY: the caller's.
+    unsafe {
+        let to = to.as_mut_ptr().add(at).cast::<f64>();
+        _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), more));
+    }
+}
+
+#[target_feature(enable = "avx2")]
+pub fn add_corners(
+    to: &mut [Quad],
+    first: usize,
+    nodes: TileNodes,
+    vectors: &Corners,
+    fourth: &[Lane; 4],
+) {
+    assert!(nodes.are_among(first, to.len()));
+    for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
+        for i in 0..4 {
+            let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c], 4 * k));
+            let rows = transpose(x, y, z, four(&fourth[i], 4 * k));
+            for j in 0..4 {
+                // SAFETY: all nodes are there.
+                unsafe { add(to, cells[j][i] as usize - first, rows[j]) };
+            }
+        }
+    }
+}
+
+#[target_feature(enable = "avx2")]
+pub fn add_alike(
+    to: &mut [Quad],
+    first: usize,
+    nodes: TileNodes,
+    [a, b]: [&Lane; 2],
+    own: Option<&[Lane; 4]>,
+) {
+    assert!(nodes.are_among(first, to.len()));
+    let zero = _mm256_setzero_pd();
+    for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
+        let (a, b) = (four(a, 4 * k), four(b, 4 * k));
+        let alike = transpose(a, b, zero, zero);
+        for i in 0..4 {
+            let rows = match own {
+                Some(own) => transpose(a, b, four(&own[i], 4 * k), zero),
+                None => alike,
+            };
+            for j in 0..4 {
+                // SAFETY: all nodes are there.
+                unsafe { add(to, cells[j][i] as usize - first, rows[j]) };
+            }
+        }
+    }
+}

@@ -3,7 +3,7 @@
 //! They are found anew wherever they are needed: their numbers would take longer to come from memory than the places of
 //! the nodes, which the cache holds, take to make them.
 
-use super::corners::{Corners, Quad, TileNodes, all_corners, load_nodes};
+use super::corners::{Corners, Quad, TileNodes, all_corners, load_and_sum, load_nodes};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, Simd, for_each_simd, get, set};
 use crate::mesh::{barycentric, tetrahedron_gradients};
@@ -55,6 +55,20 @@ impl Shapes {
         places: &[Quad],
     ) {
         load_nodes(simd, corners, nodes, places);
+        find(simd, self, corners);
+    }
+
+    /// The same, and the sums of the fourth numbers of `places`.
+    #[inline]
+    pub(super) fn enter_and_sum(
+        &mut self,
+        simd: Simd,
+        corners: &mut Corners,
+        sums: &mut Lane,
+        nodes: TileNodes,
+        places: &[Quad],
+    ) {
+        load_and_sum(simd, corners, sums, nodes, places);
         find(simd, self, corners);
     }
 

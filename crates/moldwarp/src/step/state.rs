@@ -47,11 +47,9 @@ pub struct Node {
 pub struct Shared {
     /// φ: volume of particles over volume of elements, of all elements attached.
     pub filling: Vec<f64>,
-    /// Mass over volume of all elements attached, kg/m³.
-    pub density: Vec<f64>,
     /// A quarter of the averaged mean stress of the attached cells, Pa, where stresses are smoothed.
     pub mean_stress: Vec<f64>,
-    /// Where nodes are, m.
+    /// Where nodes are, m, and mass over volume of all elements attached where these are full, kg/m³.
     pub places: Vec<Quad>,
     /// Δu_i of the last drift, m, and the averaged volumetric strain of the attached cells.
     pub moved: Vec<Quad>,
@@ -66,9 +64,7 @@ pub struct Shared {
 impl Shared {
     /// Of these nodes; what cells still need of the last drift is kept.
     pub(crate) fn renew(&mut self, nodes: &[Node]) {
-        for numbers in [&mut self.filling, &mut self.density] {
-            numbers.resize(nodes.len(), 0.0);
-        }
+        self.filling.resize(nodes.len(), 0.0);
         for vectors in [&mut self.given, &mut self.received] {
             vectors.resize(nodes.len(), Quad::default());
         }

@@ -1,9 +1,7 @@
 //! Stage 1: masses, momenta and internal forces from particles (Jassim et al. Eq. 5–7).
 
 use super::collect::{Share, Shares};
-use super::corners::{
-    self, Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes, set_corner,
-};
+use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes, set_corner};
 use super::shapes::Shapes;
 use super::time_step::{Limits, Steps};
 use super::{Active, BLOCK, CellFill, CellForce, CellMedium, CellSums, Cells, Node};
@@ -23,6 +21,8 @@ use std::ops::Range;
 
 /// All four nodes of a filled cell are fuller than this.
 const FILLED: f64 = 0.6;
+/// What stands for the density at other nodes: so is the sum of a cell that is not filled.
+const NOT_FULL: f64 = f64::INFINITY;
 
 pub(super) fn run(sim: &mut Simulation, before: f64) {
     sums::run(sim, before);
@@ -52,15 +52,15 @@ fn sum_nodes(sim: &mut Simulation) {
     let grid_nodes = walls.count(mesh) as u32;
     let numbers = (
         &mut shared.filling[..],
-        &mut shared.density[..],
+        &mut shared.places[..],
         &mut cells.mass.diagonal[..],
     );
     let items = (0..nodes.len(), &mut nodes[..], numbers);
-    type Numbers<'a> = (&'a mut [f64], &'a mut [f64], &'a mut [f64]);
+    type Numbers<'a> = (&'a mut [f64], &'a mut [Quad], &'a mut [f64]);
     fold(items, BLOCK, &|(
         slots,
         nodes,
-        (fillings, densities, squares),
+        (fillings, places, squares),
     ): (
         Range<usize>,
         &mut [Node],
@@ -68,9 +68,9 @@ fn sum_nodes(sim: &mut Simulation) {
     )| {
         let (mut first, mut last) = ([Quad::default(); BLOCK], [Quad::default(); BLOCK]);
         (portions.nodes).sums(slots.clone(), &mut [&mut first, &mut last]);
-        let numbers = fillings.iter_mut().zip(densities).zip(squares);
+        let numbers = fillings.iter_mut().zip(places).zip(squares);
         let sums = first.iter().zip(&last);
-        for (((slot, node), sums), ((filling, density), own)) in
+        for (((slot, node), sums), ((filling, place), own)) in
             slots.zip(nodes).zip(sums).zip(numbers)
         {
             let (&Quad([x, y, z, mass]), &Quad([volume, all_mass, square, _])) = sums;
@@ -92,7 +92,7 @@ fn sum_nodes(sim: &mut Simulation) {
                 Vec3::ZERO
             };
             *filling = volume / whole;
-            *density = all_mass / whole;
+            place.0[3] = either(*filling > FILLED, all_mass / whole, NOT_FULL);
             node.load = Vec3::ZERO;
         }
     });
@@ -159,26 +159,27 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             let (mut moved, mut pushed, mut share) = (NO_CORNERS, NO_CORNERS, shares.begin());
             let (mut work, mut passing) = (Lane::of(0.0), CellForce::default());
             let (mut shapes, mut steps) = (Shapes::default(), Steps::default());
+            let mut densities = Lane::of(0.0);
             let mut forces = forces.map(|forces| forces.iter_mut());
             for (tile, fill) in range.zip(fills) {
                 let nodes = TileNodes::new(simd, active.tile_nodes(tile));
                 let kept = forces.as_mut().and_then(|forces| forces.next());
                 let force = kept.unwrap_or(&mut passing);
-                for l in 0..LANES {
-                    let filled = mixed && active.is_cell[tile * LANES + l];
-                    let filled = filled && is_filled(&nodes[l], &shared.filling);
-                    fill.filled[l] = f64::from(u8::from(filled));
-                }
-                corners::sum_nodes(&mut fill.density, nodes, &shared.density);
-                shapes.enter(simd, &mut pushed, nodes, &shared.places);
+                shapes.enter_and_sum(simd, &mut pushed, &mut densities, nodes, &shared.places);
                 let sum = &sums[tile];
                 prefetch_record(sums, tile + RECORDS_AHEAD);
-                stand_in(simd, &shapes, sum, fill, force);
+                let is_cell = &active.is_cell.as_chunks().0[tile];
+                find_filled(simd, &densities, is_cell, mixed, fill);
+                let mut empty = false;
+                stand_in(simd, &shapes, sum, fill, force, &mut empty);
                 steps.add(simd, &limits, &shapes, sum, medium.get(tile), fill);
                 if reference.is_some() {
                     force.weighed = medium[tile].shares;
                 }
                 for l in 0..LANES {
+                    if !empty && reference.is_none() {
+                        break;
+                    }
                     if fill.filled[l] == 0.0 || (sum.volume[l] > 0.0 && reference.is_none()) {
                         continue;
                     }
@@ -227,9 +228,33 @@ fn times(factor: f64, lane: &Lane) -> Lane {
 }
 
 for_each_simd! {
-    /// The stress of cells of which the particles, and no others, decide.
-    fn stand_in(shapes: &Shapes, sum: &CellSums, fill: &mut CellFill, force: &mut CellForce) {
+    /// Which cells count as filled, and the density of these.
+    fn find_filled(
+        densities: &Lane,
+        is_cell: &[bool; LANES],
+        mixed: bool,
+        fill: &mut CellFill,
+    ) {
         for l in 0..LANES {
+            let filled = mixed & is_cell[l] & (densities[l] < NOT_FULL);
+            fill.filled[l] = either(filled, 1.0, 0.0);
+            fill.density[l] = 0.25 * densities[l];
+        }
+    }
+}
+
+for_each_simd! {
+    /// The stress of cells of which the particles, and no others, decide; says whether any is filled and has none.
+    fn stand_in(
+        shapes: &Shapes,
+        sum: &CellSums,
+        fill: &CellFill,
+        force: &mut CellForce,
+        empty: &mut bool,
+    ) {
+        *empty = false;
+        for l in 0..LANES {
+            *empty |= (fill.filled[l] > 0.0) & (sum.volume[l] <= 0.0);
             let (filled, volume) = (fill.filled[l] > 0.0, sum.volume[l]);
             // Of cells that are filled, but have no particles, neighbours decide.
             let fuller = either(filled, shapes.volume[l] / volume, 1.0);
@@ -237,7 +262,6 @@ for_each_simd! {
                 force.stress[k][l] = sum.stress[k][l] * fuller;
             }
             force.smoothed[l] = 0.0;
-            fill.density[l] *= 0.25;
         }
     }
 }

@@ -251,6 +251,12 @@ impl<'a, const N: usize> Columns<'a, N> {
         self.0[0].len()
     }
 
+    /// The numbers of a particle.
+    #[inline]
+    pub fn at(&self, place: usize) -> [f64; N] {
+        std::array::from_fn(|k| self.0[k][place])
+    }
+
     /// Copies the numbers of particles from `start` on to lanes: as many as there are lanes or particles.
     #[inline(always)]
     pub fn load(&self, lanes: &mut [Lane; N], start: usize) {

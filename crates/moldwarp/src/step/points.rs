@@ -142,7 +142,8 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 // All at once they would wait for each other.
                 arrays.position.prefetch(start + AHEAD);
                 arrays.velocity.prefetch(start + AHEAD);
-                stress.update(&deformation, slot.start, bodies, whose);
+                let known = (&arrays.stressed, start);
+                stress.update(&deformation, slot.start, bodies, whose, known);
                 arrays.stressed.0.prefetch(start + AHEAD);
                 end(
                     simd,

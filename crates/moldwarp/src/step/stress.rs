@@ -144,9 +144,17 @@ impl<'a> Stresses<'a> {
         }
     }
 
-    /// New stresses and state variables of the particles of a slot of these cells, whose stresses have turned.
+    /// New stresses and state variables of the particles of a slot of these cells, whose stresses have turned but for those in
+    /// the arrays.
     #[inline]
-    pub fn update(&mut self, own: &Deformation, place: usize, body: &[u16], whose: Whose<'a>) {
+    pub fn update(
+        &mut self,
+        own: &Deformation,
+        place: usize,
+        body: &[u16],
+        whose: Whose<'a>,
+        (arrays, start): (&Arrays, usize),
+    ) {
         let Stresses {
             whose: bodies,
             answers,
@@ -154,7 +162,7 @@ impl<'a> Stresses<'a> {
             points,
             ..
         } = self;
-        points.find_separated(body, whose, bodies);
+        points.find_separated(body, whose, bodies, arrays, start);
         points.strain(*simd, own);
         points.update(*simd, body, whose, bodies, (answers, place));
     }
@@ -210,7 +218,14 @@ impl Points {
 
     /// Finds out which particles are separated.
     #[inline]
-    pub fn find_separated(&mut self, body: &[u16], whose: Whose, bodies: &Bodies) {
+    pub fn find_separated(
+        &mut self,
+        body: &[u16],
+        whose: Whose,
+        bodies: &Bodies,
+        (stresses, ..): &Arrays,
+        start: usize,
+    ) {
         self.apart = false;
         if whose.closed || !self.open {
             return;
@@ -220,8 +235,7 @@ impl Points {
             let model = bodies.model(body);
             let state = get(&self.increment.state, l);
             if model.opening().is_some_and(|k| state[k] > 0.0) {
-                // (Whether a stress has turned makes no difference.)
-                let separated = model.is_separated(&get(&self.increment.before, l), &state);
+                let separated = model.is_separated(&stresses.at(start + l), &state);
                 self.separated[l] = f64::from(u8::from(separated));
                 self.apart |= separated;
             }

@@ -273,7 +273,8 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
                     continue;
                 }
                 fetch(simd, &mut points, &arrays, &own, start, held(lanes));
-                points.find_separated(body, bodies.of(body), &bodies);
+                let whose = bodies.of(body);
+                points.find_separated(body, whose, &bodies, &arrays, start);
                 points.strain(simd, &own);
                 before.store(simd, &points.increment.before, start, lanes);
                 increment.store(simd, &points.increment.strain, start, lanes);

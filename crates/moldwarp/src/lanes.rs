@@ -117,7 +117,8 @@ impl Simd {
 }
 
 /// Compiles a function once for each instruction set, and calls the one that its first argument asks for.
-/// What it calls must be inlined, else it is compiled for the least processor.
+/// What it calls must be inlined, else it is compiled for the least processor. In it, `S` are the instructions
+/// ([`Instructions`](crate::step::Instructions)).
 macro_rules! for_each_simd {
     ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $body:block) => {
         $(#[$doc])*
@@ -125,18 +126,18 @@ macro_rules! for_each_simd {
         $vis fn $name(simd: $crate::lanes::Simd, $($arg: $type),*) {
             #[inline(always)]
             #[allow(clippy::too_many_arguments)]
-            fn plain($($arg: $type),*) $body
+            fn plain<S: $crate::step::Instructions>($($arg: $type),*) $body
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2")]
                 #[allow(clippy::too_many_arguments)]
                 fn avx2($($arg: $type),*) {
-                    plain($($arg),*);
+                    plain::<$crate::step::Avx2>($($arg),*);
                 }
                 #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
                 #[allow(clippy::too_many_arguments)]
                 fn avx512($($arg: $type),*) {
-                    plain($($arg),*);
+                    plain::<$crate::step::Avx512>($($arg),*);
                 }
                 if simd.has_avx512() {
                     // SAFETY: `Simd` is made only where the processor has it.
@@ -148,7 +149,7 @@ macro_rules! for_each_simd {
                 }
             }
             let _ = simd;
-            plain($($arg),*);
+            plain::<$crate::step::Plain>($($arg),*);
         }
     };
 }

@@ -1,7 +1,7 @@
 //! Stages 7 and 8: particles move with the nodes, the mesh moves with its driver and its boundaries,
 //! and each particle's element is found anew.
 
-use super::corners::{NO_CORNERS, TileNodes};
+use super::corners::TileNodes;
 use super::motion::{Crossing, Motion, Search, look};
 use super::shapes::Shapes;
 use super::state::moved;
@@ -104,11 +104,10 @@ fn locate(sim: &mut Simulation) -> Crossing {
         let tiles = block.each();
         let elements = block.particles;
         let (mut motion, mut shapes) = (Motion::default(), Shapes::default());
-        let mut corners = NO_CORNERS;
         let mut crossing = Crossing::default();
         for (number, tile) in tiles {
             let nodes = TileNodes::new(simd, active.tile_nodes(number));
-            shapes.enter(simd, &mut corners, nodes, places);
+            shapes.enter(simd, nodes, places);
             for slot in tile.slots() {
                 look(simd, &mut motion, &shapes, &position, slot.start);
                 let own = &mut elements[slot.start - first..];

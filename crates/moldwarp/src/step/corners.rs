@@ -6,6 +6,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, Simd, for_each_simd};
@@ -141,50 +143,80 @@ pub(super) fn sum_nodes(sums: &mut Lane, nodes: TileNodes, numbers: &[f64]) {
     }
 }
 
+/// Instructions that a kernel is compiled for (`for_each_simd!`).
+pub trait Instructions {
+    /// The numbers of node `i` of each cell.
+    ///
+    /// # Safety
+    /// The processor has the instructions, and all nodes are there.
+    unsafe fn corner(quads: *const Quad, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4];
+
+    /// Vectors of the nodes of cells side by side, and the sums of their fourth numbers.
+    #[inline(always)]
+    fn corners(nodes: TileNodes, quads: &[Quad]) -> (Corners, Lane) {
+        assert!(nodes.are_among(0, quads.len()));
+        let (mut corners, mut sums) = (NO_CORNERS, Lane::of(0.0));
+        for i in 0..4 {
+            // SAFETY: nodes have been looked at; a kernel asks for the instructions that it is called for.
+            let [x, y, z, fourth] = unsafe { Self::corner(quads.as_ptr(), &nodes, i) };
+            (corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]) = (x, y, z);
+            for l in 0..LANES {
+                sums[l] += fourth[l];
+            }
+        }
+        (corners, sums)
+    }
+}
+
+/// Those that any processor has.
+pub struct Plain;
+#[cfg(target_arch = "x86_64")]
+pub struct Avx2;
+#[cfg(target_arch = "x86_64")]
+pub struct Avx512;
+
+impl Instructions for Plain {
+    #[inline(always)]
+    unsafe fn corner(quads: *const Quad, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4] {
+        let mut lanes = [Lane::of(0.0); 4];
+        for l in 0..LANES {
+            // SAFETY: the caller's.
+            let quad = unsafe { *quads.add(nodes[l][i] as usize) }.0;
+            for k in 0..4 {
+                lanes[k][l] = quad[k];
+            }
+        }
+        lanes
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Instructions for Avx2 {
+    #[inline(always)]
+    unsafe fn corner(quads: *const Quad, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4] {
+        // SAFETY: the caller's.
+        unsafe { avx2::corner(quads.cast(), nodes, i) }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Instructions for Avx512 {
+    #[inline(always)]
+    unsafe fn corner(quads: *const Quad, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4] {
+        // SAFETY: the caller's.
+        unsafe { avx512::corner(quads.cast(), nodes, i) }
+    }
+}
+
+for_each_simd! {
+    fn load(corners: &mut Corners, nodes: TileNodes, vectors: &[Quad]) {
+        *corners = S::corners(nodes, vectors).0;
+    }
+}
+
 /// Copies vectors of the nodes of cells side by side.
 pub(super) fn load_nodes(simd: Simd, corners: &mut Corners, nodes: TileNodes, vectors: &[Quad]) {
-    #[cfg(target_arch = "x86_64")]
-    if simd.has_avx2() {
-        // SAFETY: the processor has the instructions.
-        return unsafe { avx2::load_nodes(corners, None, nodes, vectors) };
-    }
-    let _ = simd;
-    load_plainly(corners, None, nodes, vectors);
-}
-
-/// The same, and sums up their fourth numbers.
-pub(super) fn load_and_sum(
-    simd: Simd,
-    corners: &mut Corners,
-    sums: &mut Lane,
-    nodes: TileNodes,
-    quads: &[Quad],
-) {
-    #[cfg(target_arch = "x86_64")]
-    if simd.has_avx2() {
-        // SAFETY: the processor has the instructions.
-        return unsafe { avx2::load_nodes(corners, Some(sums), nodes, quads) };
-    }
-    let _ = simd;
-    load_plainly(corners, Some(sums), nodes, quads);
-}
-
-fn load_plainly(
-    corners: &mut Corners,
-    mut sums: Option<&mut Lane>,
-    nodes: TileNodes,
-    quads: &[Quad],
-) {
-    for (l, cell) in nodes.iter().enumerate() {
-        let mut sum = 0.0;
-        for (i, &n) in cell.iter().enumerate() {
-            set_corner(corners, l, i, quads[n as usize].vector());
-            sum += quads[n as usize].0[3];
-        }
-        if let Some(sums) = &mut sums {
-            sums[l] = sum;
-        }
-    }
+    load(simd, corners, nodes, vectors);
 }
 
 /// Adds to numbers of nodes, of which those of node `first` come first: a vector and a number for each corner.
@@ -259,6 +291,12 @@ pub(super) fn add_alike(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    for_each_simd! {
+        fn load_and_sum(corners: &mut Corners, sums: &mut Lane, nodes: TileNodes, quads: &[Quad]) {
+            (*corners, *sums) = S::corners(nodes, quads);
+        }
+    }
 
     /// Cells that share nodes, by what the instructions of this processor do and without them.
     #[test]

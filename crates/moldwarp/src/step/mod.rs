@@ -50,6 +50,9 @@ mod to_nodes;
 mod to_particles;
 
 pub use active::{Active, Grid};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use corners::{Avx2, Avx512};
+pub(crate) use corners::{Instructions, Plain};
 pub(crate) use guests::{Guests, Known, homes};
 pub(crate) use mass::ConsistentMass;
 pub(crate) use nodes::unheld;

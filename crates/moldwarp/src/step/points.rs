@@ -4,7 +4,7 @@
 //! One pass in place of four, since a particle's numbers come from memory, which takes about as long as to compute with
 //! them.
 
-use super::corners::{NO_CORNERS, TileNodes};
+use super::corners::TileNodes;
 use super::motion::{Crossing, Motion, Search};
 use super::shapes::Shapes;
 use super::state::Summed;
@@ -101,7 +101,6 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (records, (to_nodes, to_pairs)) = block.cells;
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
         let (mut shapes, mut sums) = (Shapes::default(), Sums::default());
-        let mut corners = NO_CORNERS;
         let mut giving = (to_nodes.begin(), to_pairs.begin());
         let mut kick = Kick::default();
         let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
@@ -109,11 +108,11 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
         for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
             let nodes = TileNodes::new(simd, active.tile_nodes(number));
-            shapes.enter(simd, &mut corners, nodes, &shared.places);
-            deformation.enter(simd, &mut corners, &shapes, nodes, shared, smoothing);
+            shapes.enter(simd, nodes, &shared.places);
+            deformation.enter(simd, &shapes, nodes, shared, smoothing);
             stress.points.enter();
             own_work(simd, &deformation, records.sum, &mut begun);
-            kick.enter(simd, &mut corners, &given, nodes, &shapes);
+            kick.enter(simd, &given, nodes, &shapes);
 
             if stays {
                 sums.enter(&mut records);

@@ -3,7 +3,7 @@
 //! They are found anew wherever they are needed: their numbers would take longer to come from memory than the places of
 //! the nodes, which the cache holds, take to make them.
 
-use super::corners::{Corners, Quad, TileNodes, all_corners, load_and_sum, load_nodes};
+use super::corners::{Quad, TileNodes, all_corners};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, Simd, for_each_simd, get, set};
 use crate::mesh::{barycentric, tetrahedron_gradients};
@@ -29,9 +29,11 @@ impl Default for Shapes {
 }
 
 for_each_simd! {
-    fn find(shapes: &mut Shapes, places: &Corners) {
+    fn find(shapes: &mut Shapes, nodes: TileNodes, places: &[Quad], sums: &mut Lane) {
+        let (places, all) = S::corners(nodes, places);
+        *sums = all;
         for l in 0..LANES {
-            let corners = all_corners(places, l);
+            let corners = all_corners(&places, l);
             let (gradients, volume) = tetrahedron_gradients(corners);
             set(&mut shapes.origin, l, corners[0].to_array());
             for (i, g) in gradients.iter().enumerate() {
@@ -45,17 +47,11 @@ for_each_simd! {
 }
 
 impl Shapes {
-    /// Goes to cells with these nodes; `places` are those of all nodes. Overwrites `corners`.
+    /// Goes to cells with these nodes; `places` are those of all nodes.
     #[inline]
-    pub(super) fn enter(
-        &mut self,
-        simd: Simd,
-        corners: &mut Corners,
-        nodes: TileNodes,
-        places: &[Quad],
-    ) {
-        load_nodes(simd, corners, nodes, places);
-        find(simd, self, corners);
+    pub(super) fn enter(&mut self, simd: Simd, nodes: TileNodes, places: &[Quad]) {
+        let mut sums = Lane::of(0.0);
+        find(simd, self, nodes, places, &mut sums);
     }
 
     /// The same, and the sums of the fourth numbers of `places`.
@@ -63,13 +59,11 @@ impl Shapes {
     pub(super) fn enter_and_sum(
         &mut self,
         simd: Simd,
-        corners: &mut Corners,
         sums: &mut Lane,
         nodes: TileNodes,
         places: &[Quad],
     ) {
-        load_and_sum(simd, corners, sums, nodes, places);
-        find(simd, self, corners);
+        find(simd, self, nodes, places, sums);
     }
 
     /// ∇N₁, ∇N₂, ∇N₃ of an element.

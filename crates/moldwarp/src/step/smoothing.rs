@@ -109,10 +109,9 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
     )| {
         let (mut traces, mut weights) = (Lane::of(0.0), Lane::of(0.0));
         let (mut shapes, mut share) = (Shapes::default(), shares.begin());
-        let mut corners = NO_CORNERS;
         for tile in tiles {
             let (force, nodes) = (&known[tile], TileNodes::new(simd, active.tile_nodes(tile)));
-            shapes.enter(simd, &mut corners, nodes, places);
+            shapes.enter(simd, nodes, places);
             for l in 0..LANES {
                 traces[l] = tensor::trace(&get(&force.stress, l));
                 weights[l] = weight(tile, l, &shapes);
@@ -135,7 +134,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         let mut share = shares.begin();
         for (tile, force) in tiles.zip(forces) {
             let nodes = TileNodes::new(simd, active.tile_nodes(tile));
-            shapes.enter(simd, &mut pushed, nodes, places);
+            shapes.enter(simd, nodes, places);
             sum_nodes(&mut means, nodes, mean_stress);
             load_nodes(simd, &mut moved, nodes, drift);
             for l in (0..LANES).filter(|&l| active.is_cell[tile * LANES + l]) {

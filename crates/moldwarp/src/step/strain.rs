@@ -1,7 +1,7 @@
 //! Stage 5: strain of each cell, its volumetric part smoothed (see `smoothing`).
 
 use super::collect::Shares;
-use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_and_sum, load_nodes};
+use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes};
 use super::shapes::Shapes;
 use super::{CellFill, CellForce, CellSums, Cells, Shared, smoothing};
 use crate::lanes::{
@@ -79,35 +79,27 @@ impl Deformation {
     pub fn enter(
         &mut self,
         simd: Simd,
-        corners: &mut Corners,
         shapes: &Shapes,
         nodes: TileNodes,
         shared: &Shared,
         smoothing: Smoothing,
     ) {
-        let mut sum = Lane::of(0.0);
-        load_and_sum(simd, corners, &mut sum, nodes, &shared.moved);
-        deform(
-            simd,
-            corners,
-            &sum,
-            shapes,
-            smoothing != Smoothing::Off,
-            self,
-        );
+        let smooth = smoothing != Smoothing::Off;
+        deform(simd, nodes, &shared.moved, shapes, smooth, self);
     }
 }
 
 for_each_simd! {
     fn deform(
-        moved: &Corners,
-        averaged: &Lane,
+        nodes: TileNodes,
+        moved: &[Quad],
         shapes: &Shapes,
         smooth: bool,
         d: &mut Deformation,
     ) {
+        let (moved, averaged) = S::corners(nodes, moved);
         for l in 0..LANES {
-            let corners = all_corners(moved, l);
+            let corners = all_corners(&moved, l);
             let gradient = gradient(&shapes.gradients(l), corners);
             let midpoint = midpoint(&gradient);
             let volumetric = volumetric(&gradient);
@@ -160,10 +152,11 @@ struct Weighed<'a> {
 
 for_each_simd! {
     /// θ_e w_e and w_e.
-    fn weigh(tile: &Weighed, moved: &Corners, weights: &mut [Lane; 2]) {
+    fn weigh(tile: &Weighed, nodes: TileNodes, moved: &[Quad], weights: &mut [Lane; 2]) {
         let Weighed { shapes, sum, fill } = tile;
+        let (moved, _) = S::corners(nodes, moved);
         for l in 0..LANES {
-            let gradient = gradient(&shapes.gradients(l), all_corners(moved, l));
+            let gradient = gradient(&shapes.gradients(l), all_corners(&moved, l));
             let volumetric = volumetric(&gradient);
             let (volume, whole) = (sum.volume[l], shapes.volume[l]);
             let weight = smoothing::weight(fill.filled[l], volume, sum.closed[l], whole);
@@ -215,16 +208,16 @@ fn gradients(sim: &mut Simulation) {
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
         for tile in tiles {
             let nodes = TileNodes::new(simd, active.tile_nodes(tile));
-            shapes.enter(simd, &mut moved, nodes, &shared.places);
-            load_nodes(simd, &mut moved, nodes, &shared.moved);
+            shapes.enter(simd, nodes, &shared.places);
             prefetch_record(sums, tile + RECORDS_AHEAD);
             let weighed = Weighed {
                 shapes: &shapes,
                 sum: &sums[tile],
                 fill: &fills[tile],
             };
-            weigh(simd, &weighed, &moved, &mut weights);
+            weigh(simd, &weighed, nodes, &shared.moved, &mut weights);
             if let Some(force) = forces.get(tile) {
+                load_nodes(simd, &mut moved, nodes, &shared.moved);
                 more_work(simd, &shapes, &moved, force, &mut works);
             }
             share.give_alike(simd, nodes, weights.each_ref(), None);

@@ -498,7 +498,7 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
             let nodes = TileNodes::new(asked.simd, active.tile_nodes(number));
             let pairs = mass.tile_pairs(number);
-            shapes.enter(asked.simd, &mut moved, nodes, &shared.places);
+            shapes.enter(asked.simd, nodes, &shared.places);
             sums.enter(&mut records);
             for slot in tile.slots() {
                 fetch(

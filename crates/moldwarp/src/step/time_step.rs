@@ -1,6 +1,6 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
-use super::corners::{NO_CORNERS, TileNodes};
+use super::corners::TileNodes;
 use super::shapes::Shapes;
 use super::{CellFill, CellMedium, CellSums, correction};
 use crate::Vec3;
@@ -140,11 +140,10 @@ fn shortest_at(sim: &Simulation) -> Vec3 {
     } = sim;
     let limits = Limits::new(&plan.numerics, &sim.elasticity);
     let (mut steps, mut shapes) = (Steps::default(), Shapes::default());
-    let mut corners = NO_CORNERS;
     let mut shortest = (f64::INFINITY, 0);
     for tile in 0..active.own_tiles() {
         let nodes = TileNodes::new(*simd, active.tile_nodes(tile));
-        shapes.enter(*simd, &mut corners, nodes, &shared.places);
+        shapes.enter(*simd, nodes, &shared.places);
         let (sum, fill) = (&cells.sums[tile], &cells.fills[tile]);
         steps.add(*simd, &limits, &shapes, sum, cells.medium.get(tile), fill);
         for (l, &step) in steps.own.iter().enumerate() {

@@ -165,7 +165,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 let nodes = TileNodes::new(simd, active.tile_nodes(tile));
                 let kept = forces.as_mut().and_then(|forces| forces.next());
                 let force = kept.unwrap_or(&mut passing);
-                shapes.enter_and_sum(simd, &mut pushed, &mut densities, nodes, &shared.places);
+                shapes.enter_and_sum(simd, &mut densities, nodes, &shared.places);
                 let sum = &sums[tile];
                 prefetch_record(sums, tile + RECORDS_AHEAD);
                 let is_cell = &active.is_cell.as_chunks().0[tile];

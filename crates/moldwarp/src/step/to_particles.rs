@@ -9,7 +9,7 @@
 //! and their energy Σ ½ m_p |v_p|² + h Σ m_i v_i · a_i + ½ h² Σ a_i · M_ij a_j. So particles receive their velocities
 //! when the next drift goes through them (`points.rs`), or as soon as anyone wants to see them ([`Simulation::settle`]).
 
-use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes};
+use super::corners::{Quad, TileNodes, all_corners};
 use super::shapes::Shapes;
 use super::{BLOCK, Node, Shared, strain};
 use crate::lanes::{
@@ -75,22 +75,13 @@ pub(super) struct Given<'a> {
 impl Kick {
     /// Goes to the next cells.
     #[inline]
-    pub fn enter(
-        &mut self,
-        simd: Simd,
-        corners: &mut Corners,
-        given: &Given,
-        nodes: TileNodes,
-        shapes: &Shapes,
-    ) {
+    pub fn enter(&mut self, simd: Simd, given: &Given, nodes: TileNodes, shapes: &Shapes) {
         let Some(pending) = given.pending else {
             return;
         };
-        load_nodes(simd, corners, nodes, given.received);
-        vary(simd, &mut self.received, corners, shapes);
+        vary(simd, &mut self.received, nodes, given.received, shapes);
         if pending.blend > 0.0 {
-            load_nodes(simd, corners, nodes, given.grid);
-            vary(simd, &mut self.grid, corners, shapes);
+            vary(simd, &mut self.grid, nodes, given.grid, shapes);
         }
     }
 
@@ -117,9 +108,10 @@ impl Kick {
 }
 
 for_each_simd! {
-    fn vary(linear: &mut Linear, corners: &Corners, shapes: &Shapes) {
+    fn vary(linear: &mut Linear, nodes: TileNodes, given: &[Quad], shapes: &Shapes) {
+        let (corners, _) = S::corners(nodes, given);
         for l in 0..LANES {
-            let corners = all_corners(corners, l);
+            let corners = all_corners(&corners, l);
             let gradient = strain::gradient(&shapes.gradients(l), corners);
             set(&mut linear.origin, l, corners[0].to_array());
             set(&mut linear.gradient, l, gradient.to_cols_array());
@@ -278,13 +270,13 @@ fn settle(sim: &mut Simulation, pending: Pending) {
         let first = block.first();
         let tiles = block.each();
         let mut own = block.particles;
-        let (mut shapes, mut corners) = (Shapes::default(), NO_CORNERS);
+        let mut shapes = Shapes::default();
         let mut kick = Kick::default();
         let (mut x, mut v) = ([Lane::of(0.0); 3], [Lane::of(0.0); 3]);
         for (number, tile) in tiles {
             let nodes = TileNodes::new(simd, active.tile_nodes(number));
-            shapes.enter(simd, &mut corners, nodes, places);
-            kick.enter(simd, &mut corners, &given, nodes, &shapes);
+            shapes.enter(simd, nodes, places);
+            kick.enter(simd, &given, nodes, &shapes);
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());
                 prefetch(&position, slot.end + AHEAD);

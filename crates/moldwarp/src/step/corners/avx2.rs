@@ -1,6 +1,6 @@
 //! With AVX2: four cells at a time.
 
-use super::{Corners, Lane, Quad, TileNodes};
+use super::{Corners, LANES, Lane, Quad, TileNodes};
 use std::arch::x86_64::*;
 
 /// Rows to columns.
@@ -26,45 +26,25 @@ fn four(lane: &Lane, l: usize) -> __m256d {
     unsafe { _mm256_loadu_pd(four.as_ptr()) }
 }
 
+/// The numbers of node `i` of each cell.
+///
+/// # Safety
+/// All nodes must be there.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn set_four(lane: &mut Lane, l: usize, four: __m256d) {
-    let to: &mut [f64; 4] = &mut lane.as_chunks_mut::<4>().0[l / 4];
-    // SAFETY: there are four.
-    unsafe { _mm256_storeu_pd(to.as_mut_ptr(), four) }
-}
-
-#[target_feature(enable = "avx2")]
-pub fn load_nodes(
-    corners: &mut Corners,
-    mut sums: Option<&mut Lane>,
-    nodes: TileNodes,
-    quads: &[Quad],
-) {
-    assert!(nodes.are_among(0, quads.len()));
-    let from = quads.as_ptr().cast::<f64>();
-    for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
-        let mut sum = _mm256_setzero_pd();
-        for i in 0..4 {
-            // SAFETY: all nodes are there.
-            let rows = unsafe {
-                [
-                    _mm256_load_pd(from.add(4 * cells[0][i] as usize)),
-                    _mm256_load_pd(from.add(4 * cells[1][i] as usize)),
-                    _mm256_load_pd(from.add(4 * cells[2][i] as usize)),
-                    _mm256_load_pd(from.add(4 * cells[3][i] as usize)),
-                ]
-            };
-            let [x, y, z, fourth] = transpose(rows[0], rows[1], rows[2], rows[3]);
-            sum = _mm256_add_pd(sum, fourth);
-            set_four(&mut corners[3 * i], 4 * k, x);
-            set_four(&mut corners[3 * i + 1], 4 * k, y);
-            set_four(&mut corners[3 * i + 2], 4 * k, z);
-        }
-        if let Some(sums) = &mut sums {
-            set_four(sums, 4 * k, sum);
+pub unsafe fn corner(quads: *const f64, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4] {
+    let mut lanes = [Lane::of(0.0); 4];
+    for (k, nodes) in nodes.as_chunks::<4>().0.iter().enumerate() {
+        // SAFETY: the caller's; there are eight places in a lane.
+        unsafe {
+            let row = |l: usize| _mm256_load_pd(quads.add(4 * nodes[l][i] as usize));
+            let columns = transpose(row(0), row(1), row(2), row(3));
+            for (lane, column) in lanes.iter_mut().zip(columns) {
+                _mm256_store_pd(lane.as_mut_ptr().add(4 * k), column);
+            }
         }
     }
+    lanes
 }
 
 /// # Safety

@@ -5,7 +5,7 @@
 //! the pass then finds their answers where it would call another model. Works and volumes it books as
 //! for any other.
 
-use super::super::corners::{NO_CORNERS, TileNodes};
+use super::super::corners::TileNodes;
 use super::super::shapes::Shapes;
 use super::super::strain::Deformation;
 use super::{Arrays, Bodies, Points};
@@ -256,12 +256,11 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         let (arrays, (mut before, mut increment, stress)) = block.particles;
         stress.into_iter().for_each(|s| s.fill(f64::NAN));
         let (mut own, mut shapes) = (Deformation::default(), Shapes::default());
-        let mut corners = NO_CORNERS;
         let (mut points, mut bodies) = (Points::default(), Bodies::new(plan));
         for (number, tile) in tiles {
             let nodes = TileNodes::new(simd, active.tile_nodes(number));
-            shapes.enter(simd, &mut corners, nodes, &shared.places);
-            own.enter(simd, &mut corners, &shapes, nodes, shared, smoothing);
+            shapes.enter(simd, nodes, &shared.places);
+            own.enter(simd, &shapes, nodes, shared, smoothing);
             points.enter();
             for slot in tile.slots() {
                 let (start, lanes) = (slot.start - first, slot.len());

@@ -1,0 +1,33 @@
+//! With AVX-512: eight cells at a time.
+
+use super::{LANES, Lane};
+use std::arch::x86_64::*;
+
+/// The numbers of node `i` of each cell.
+///
+/// # Safety
+/// All nodes must be there.
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub unsafe fn corner(quads: *const f64, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4] {
+    // SAFETY: the caller's; a lane has eight numbers.
+    unsafe {
+        let row = |l: usize| _mm256_load_pd(quads.add(4 * nodes[l][i] as usize));
+        // Of cells l and l + 2: halves are interleaved with those of the next cells, and then put side by side.
+        let two = |l: usize| _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(row(l)), row(l + 2));
+        let (a, b, c, d) = (two(0), two(1), two(4), two(5));
+        let (low, low_next) = (_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d));
+        let (high, high_next) = (_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
+        let columns = [
+            _mm512_shuffle_f64x2::<0b10_00_10_00>(low, low_next),
+            _mm512_shuffle_f64x2::<0b10_00_10_00>(high, high_next),
+            _mm512_shuffle_f64x2::<0b11_01_11_01>(low, low_next),
+            _mm512_shuffle_f64x2::<0b11_01_11_01>(high, high_next),
+        ];
+        let mut lanes = [Lane::of(0.0); 4];
+        for (lane, column) in lanes.iter_mut().zip(columns) {
+            _mm512_store_pd(lane.as_mut_ptr(), column);
+        }
+        lanes
+    }
+}

@@ -95,6 +95,8 @@ impl std::ops::Deref for TileNodes<'_> {
 
 for_each_simd! {
     fn find_span(numbers: &[u32], span: &mut Span) {
+        // None may be left out: what is among them is not looked at again.
+        assert!(numbers.len().is_multiple_of(16));
         let (mut least, mut greatest) = (u32::MAX, 0);
         for &n in numbers.as_chunks::<16>().0.as_flattened() {
             least = least.min(n);
@@ -209,14 +211,10 @@ impl Instructions for Avx512 {
 }
 
 for_each_simd! {
-    fn load(corners: &mut Corners, nodes: TileNodes, vectors: &[Quad]) {
+    /// Copies vectors of the nodes of cells side by side.
+    pub(super) fn load_nodes(corners: &mut Corners, nodes: TileNodes, vectors: &[Quad]) {
         *corners = S::corners(nodes, vectors).0;
     }
-}
-
-/// Copies vectors of the nodes of cells side by side.
-pub(super) fn load_nodes(simd: Simd, corners: &mut Corners, nodes: TileNodes, vectors: &[Quad]) {
-    load(simd, corners, nodes, vectors);
 }
 
 /// Adds to numbers of nodes, of which those of node `first` come first: a vector and a number for each corner.

@@ -113,7 +113,6 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             stress.points.enter();
             own_work(simd, &deformation, records.sum, &mut begun);
             kick.enter(simd, &given, nodes, &shapes);
-
             if stays {
                 sums.enter(&mut records);
             }

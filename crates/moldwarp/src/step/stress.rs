@@ -54,21 +54,27 @@ pub(super) struct Whose<'a> {
     model: Option<&'a Material>,
     /// The state variable that is greater than zero where one has opened.
     pub opening: Option<usize>,
-    /// Whether none of them can open.
-    pub closed: bool,
+}
+
+impl Whose<'_> {
+    const SEVERAL: Whose<'static> = Whose {
+        body: None,
+        model: None,
+        opening: None,
+    };
+
+    /// Whether any of them can open.
+    #[inline]
+    pub fn can_open(self) -> bool {
+        self.body.is_none() || self.opening.is_some()
+    }
 }
 
 impl<'a> Bodies<'a> {
     pub fn new(plan: &'a Plan) -> Bodies<'a> {
-        let several = Whose {
-            body: None,
-            model: None,
-            opening: None,
-            closed: false,
-        };
         let mut bodies = Bodies {
             plan,
-            last: several,
+            last: Whose::SEVERAL,
         };
         if let [_] = plan.bodies[..] {
             bodies.of_one(0);
@@ -87,7 +93,6 @@ impl<'a> Bodies<'a> {
             body: Some(body),
             model: Some(model),
             opening: model.opening(),
-            closed: model.opening().is_none(),
         };
         self.last
     }
@@ -99,12 +104,7 @@ impl<'a> Bodies<'a> {
             return self.last;
         }
         if !alike(bodies) {
-            return Whose {
-                body: None,
-                model: None,
-                opening: None,
-                closed: false,
-            };
+            return Whose::SEVERAL;
         }
         if self.last.body == Some(bodies[0]) {
             return self.last;
@@ -227,7 +227,7 @@ impl Points {
         start: usize,
     ) {
         self.apart = false;
-        if whose.closed || !self.open {
+        if !whose.can_open() || !self.open {
             return;
         }
         self.separated.fill(0.0);

@@ -176,10 +176,12 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 if reference.is_some() {
                     force.weighed = medium[tile].shares;
                 }
-                for l in 0..LANES {
-                    if !empty && reference.is_none() {
-                        break;
-                    }
+                let looked_at = if empty || reference.is_some() {
+                    LANES
+                } else {
+                    0
+                };
+                for l in 0..looked_at {
                     if fill.filled[l] == 0.0 || (sum.volume[l] > 0.0 && reference.is_none()) {
                         continue;
                     }

@@ -120,24 +120,24 @@ impl Simd {
 /// What it calls must be inlined, else it is compiled for the least processor. In it, `S` are the instructions
 /// ([`Instructions`](crate::step::Instructions)).
 macro_rules! for_each_simd {
-    ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $body:block) => {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
         $(#[$doc])*
         #[allow(clippy::too_many_arguments)]
-        $vis fn $name(simd: $crate::lanes::Simd, $($arg: $type),*) {
+        $vis fn $name(simd: $crate::lanes::Simd, $($arg: $type),*) $(-> $ret)? {
             #[inline(always)]
             #[allow(clippy::too_many_arguments)]
-            fn plain<S: $crate::step::Instructions>($($arg: $type),*) $body
+            fn plain<S: $crate::step::Instructions>($($arg: $type),*) $(-> $ret)? $body
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2")]
                 #[allow(clippy::too_many_arguments)]
-                fn avx2($($arg: $type),*) {
-                    plain::<$crate::step::Avx2>($($arg),*);
+                fn avx2($($arg: $type),*) $(-> $ret)? {
+                    plain::<$crate::step::Avx2>($($arg),*)
                 }
                 #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
                 #[allow(clippy::too_many_arguments)]
-                fn avx512($($arg: $type),*) {
-                    plain::<$crate::step::Avx512>($($arg),*);
+                fn avx512($($arg: $type),*) $(-> $ret)? {
+                    plain::<$crate::step::Avx512>($($arg),*)
                 }
                 if simd.has_avx512() {
                     // SAFETY: `Simd` is made only where the processor has it.
@@ -149,7 +149,7 @@ macro_rules! for_each_simd {
                 }
             }
             let _ = simd;
-            plain::<$crate::step::Plain>($($arg),*);
+            plain::<$crate::step::Plain>($($arg),*)
         }
     };
 }
@@ -258,6 +258,24 @@ impl<'a, const N: usize> Columns<'a, N> {
         std::array::from_fn(|k| self.0[k][place])
     }
 
+    /// Whether there are as many particles from `start` on as lanes.
+    #[inline(always)]
+    pub fn has_all(&self, start: usize) -> bool {
+        self.len() >= LANES && start <= self.len() - LANES
+    }
+
+    /// The numbers of as many particles from `start` on as there are lanes.
+    #[inline(always)]
+    pub fn all(&self, start: usize) -> [Lane; N] {
+        assert!(self.has_all(start));
+        let mut lanes = [Lane::of(0.0); N];
+        for k in 0..N {
+            // SAFETY: all columns have the length that has been looked at.
+            *lanes[k] = unsafe { *self.0[k].as_ptr().add(start).cast() };
+        }
+        lanes
+    }
+
     /// Copies the numbers of particles from `start` on to lanes: as many as there are lanes or particles.
     #[inline(always)]
     pub fn load(&self, lanes: &mut [Lane; N], start: usize) {
@@ -283,6 +301,21 @@ impl<'a, const N: usize> Columns<'a, N> {
     pub fn prefetch(&self, start: usize) {
         for column in &self.0 {
             prefetch_line(column.as_ptr().wrapping_add(start), false);
+        }
+    }
+
+    /// Copies the first numbers of lanes to particles that are there, in a kernel.
+    #[inline(always)]
+    pub fn put<S: crate::step::Instructions>(
+        &mut self,
+        lanes: &[Lane; N],
+        start: usize,
+        count: usize,
+    ) {
+        assert!(count <= LANES && start <= self.len() && count <= self.len() - start);
+        for k in 0..N {
+            // SAFETY: as has been looked at.
+            unsafe { S::store(self.0[k].as_mut_ptr().add(start), lanes[k], count) };
         }
     }
 

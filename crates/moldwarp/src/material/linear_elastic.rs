@@ -31,7 +31,7 @@ impl LinearElastic {
     }
 
     /// σ + λ tr(Δε) I + 2G Δε, Pa.
-    #[inline]
+    #[inline(always)]
     pub fn update(&self, stress: &Voigt, strain: &Voigt) -> Voigt {
         let (mean, shear) = (self.lame() * trace(strain), self.shear_modulus());
         let mut new = *stress;

@@ -10,7 +10,7 @@ pub use mohr_coulomb::{
     MohrCoulomb, MohrCoulombParameters, MohrCoulombState, ParameterError, PlasticStep, YieldState,
 };
 
-use crate::lanes::{Lane, Simd, VoigtLanes, get, set};
+use crate::lanes::{Held, LANES, Lane, Simd, VoigtLanes, get, set};
 use crate::tensor::Voigt;
 
 /// Most state variables that a model may keep per particle.
@@ -66,6 +66,18 @@ impl Default for Strained {
     }
 }
 
+/// What has become of particles side by side ([`Material::advance`]), any of them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Advanced {
+    /// Has to be updated on its own: nothing of this counts.
+    pub odd: bool,
+    pub plastic: bool,
+    /// Has opened.
+    pub open: bool,
+    /// Has other state variables than before.
+    pub changed: bool,
+}
+
 /// A material model with its parameters.
 // A plan has few materials; a box would cost the step an indirection per particle.
 #[expect(clippy::large_enum_variant)]
@@ -119,6 +131,32 @@ impl Material {
                     set(&mut s.state, l, state);
                 }
             }
+        }
+    }
+
+    /// The same in a kernel, of particles none of which has opened before: new stresses and state variables, and what a
+    /// volume dissipates, J/m³, where any is plastic. None where a model has only the ways above.
+    #[inline(always)]
+    pub(crate) fn advance(
+        &self,
+        before: &VoigtLanes,
+        strain: &VoigtLanes,
+        held: &Held,
+        stress: &mut VoigtLanes,
+        state: &mut [Lane; STATE_SIZE],
+        dissipated: &mut Lane,
+    ) -> Option<Advanced> {
+        match self {
+            Material::MohrCoulomb(soil) => {
+                Some(soil.advance(before, strain, held, stress, state, dissipated))
+            }
+            Material::LinearElastic(elastic) => {
+                for l in 0..LANES {
+                    set(stress, l, elastic.update(&get(before, l), &get(strain, l)));
+                }
+                Some(Advanced::default())
+            }
+            Material::Rigid | Material::External(_) => None,
         }
     }
 

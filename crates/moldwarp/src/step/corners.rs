@@ -153,6 +153,18 @@ pub trait Instructions {
     /// The processor has the instructions, and all nodes are there.
     unsafe fn corner(quads: *const Quad, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4];
 
+    /// Stores the first numbers of a lane.
+    ///
+    /// # Safety
+    /// The processor has the instructions, and there is room.
+    #[inline(always)]
+    unsafe fn store(to: *mut f64, lane: Lane, count: usize) {
+        for l in 0..count {
+            // SAFETY: the caller's.
+            unsafe { *to.add(l) = lane[l] };
+        }
+    }
+
     /// Vectors of the nodes of cells side by side, and the sums of their fourth numbers.
     #[inline(always)]
     fn corners(nodes: TileNodes, quads: &[Quad]) -> (Corners, Lane) {
@@ -207,6 +219,12 @@ impl Instructions for Avx512 {
     unsafe fn corner(quads: *const Quad, nodes: &[[u32; 4]; LANES], i: usize) -> [Lane; 4] {
         // SAFETY: the caller's.
         unsafe { avx512::corner(quads.cast(), nodes, i) }
+    }
+
+    #[inline(always)]
+    unsafe fn store(to: *mut f64, lane: Lane, count: usize) {
+        // SAFETY: the caller's.
+        unsafe { avx512::store(to, lane, count) }
     }
 }
 

@@ -43,6 +43,27 @@ fn is_inside(n: [f64; 4]) -> bool {
     (n[0] >= 0.0) & (n[1] >= 0.0) & (n[2] >= 0.0) & (n[3] >= 0.0)
 }
 
+/// Whether a particle with these N_i is still in its element. Where a guest comes from lies one without mass.
+#[inline(always)]
+pub(super) fn stays(n: [f64; 4], mass: f64) -> bool {
+    is_inside(n) | (mass == 0.0)
+}
+
+/// Where a particle comes to from here, its way there, and its N_i there.
+#[inline(always)]
+pub(super) fn go_along(
+    shapes: &Shapes,
+    deformation: &Deformation,
+    l: usize,
+    x: Vec3,
+) -> (Vec3, Vec3, [f64; 4]) {
+    // Σ N_i Δu_i is Δu of node 0 and, from there on, ∇Δu times the way.
+    let gradient = Mat3::from_cols_array(&get(&deformation.gradient, l));
+    let way = Vec3::from_array(get(&deformation.origin, l)) + gradient * shapes.arm(l, x);
+    let x = x + way;
+    (x, way, shapes.at(l, x))
+}
+
 for_each_simd! {
     /// Finds out which particles have left their elements, as these are now.
     pub(super) fn look(
@@ -91,18 +112,24 @@ impl Motion {
         carried: &mut Carried,
         l: usize,
     ) {
-        let mut x = Vec3::from_array(get(&self.position, l));
-        // Σ N_i Δu_i is Δu of node 0 and, from there on, ∇Δu times the way.
-        let gradient = Mat3::from_cols_array(&get(&deformation.gradient, l));
-        let step = Vec3::from_array(get(&deformation.origin, l)) + gradient * shapes.arm(l, x);
-        x += step;
+        let x = Vec3::from_array(get(&self.position, l));
+        let (x, way, n) = go_along(shapes, deformation, l, x);
+        self.count(l, carried.mass[l] * gravity.dot(way));
         set(&mut self.position, l, x.to_array());
-        self.work[l] += carried.mass[l] * gravity.dot(step);
-        let n = shapes.at(l, x);
         set(&mut carried.shapes, l, n);
-        // Where a guest comes from lies a particle without mass.
-        let stays = is_inside(n) | (carried.mass[l] == 0.0);
-        self.left[l] = either(stays, 0.0, 1.0);
+        self.left[l] = either(stays(n, carried.mass[l]), 0.0, 1.0);
+    }
+
+    /// Counts the work of gravity on a particle, J.
+    #[inline(always)]
+    pub fn count(&mut self, l: usize, work: f64) {
+        self.work[l] += work;
+    }
+
+    /// These are where particles have come to, and 1 where one has left its element.
+    #[inline(always)]
+    pub fn come_to(&mut self, position: [Lane; 3], left: Lane, some_left: bool) {
+        (self.position, self.left, self.some_left) = (position, left, some_left);
     }
 
     #[inline(always)]

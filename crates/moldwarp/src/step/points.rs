@@ -4,6 +4,8 @@
 //! One pass in place of four, since a particle's numbers come from memory, which takes about as long as to compute with
 //! them.
 
+mod usual;
+
 use super::corners::TileNodes;
 use super::motion::{Crossing, Motion, Search};
 use super::shapes::Shapes;
@@ -20,6 +22,7 @@ use crate::lanes::{
 use crate::parallel::Smallest;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
+use usual::Done;
 
 /// New velocities, stresses, volumes and positions of all particles. Returns whether one has lost all its volume, and what has
 /// crossed faces, unless the mesh is still to move.
@@ -124,51 +127,79 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 let (start, lanes) = (slot.start - first, slot.len());
                 let bodies = &body[slot.clone()];
                 let whose = stress.whose.of(bodies);
-                begin(
-                    simd,
-                    &mut motion,
-                    sums.next(),
-                    &mut stress.points,
-                    &arrays,
-                    &mass[slot.start..],
-                    &cells,
-                    (&kick, given.pending),
-                    start,
-                    held(lanes),
-                    whose.opening,
-                );
-                // All at once they would wait for each other.
-                arrays.position.prefetch(start + AHEAD);
-                arrays.velocity.prefetch(start + AHEAD);
-                let known = (&arrays.stressed, start);
-                stress.update(&deformation, slot.start, bodies, whose, known);
-                arrays.stressed.0.prefetch(start + AHEAD);
-                end(
-                    simd,
-                    &mut motion,
-                    sums.next(),
-                    &mut stress.points,
-                    &mut stress.booked,
-                    &mut kick,
-                    &cells,
-                    gravity,
-                );
-                keep(
-                    simd,
-                    &mut motion,
-                    sums.next(),
-                    &mut stress.points,
-                    &mut arrays,
-                    simd,
-                    start,
-                    lanes,
-                    whose.opening,
-                );
-                arrays.stressed.1.prefetch(start + AHEAD);
-                arrays.stressed.2.prefetch(start + AHEAD);
+                let mut done = Done::Nothing;
+                if let Some(model) = whose.model.filter(|_| !in_parts()) {
+                    let plain = stays && records.medium.is_none() && !sums.has_opened();
+                    done = usual::advance(
+                        simd,
+                        &mut arrays,
+                        &mass[slot.start..],
+                        (start, lanes),
+                        held(lanes),
+                        model,
+                        &shapes,
+                        &deformation,
+                        &mut kick,
+                        given.pending,
+                        gravity,
+                        &mut stress.points,
+                        &mut motion,
+                        &mut stress.booked,
+                        sums.next(),
+                        plain.then_some(&mut *records.sum),
+                    );
+                }
                 prefetch(&[mass], slot.start + AHEAD);
                 prefetch_bodies(body, slot.start + AHEAD);
-                stress.book_plastic();
+                if done == Done::All {
+                    sums.count(simd);
+                    continue;
+                }
+                if done == Done::Nothing {
+                    begin(
+                        simd,
+                        &mut motion,
+                        sums.next(),
+                        &mut stress.points,
+                        &arrays,
+                        &mass[slot.start..],
+                        &cells,
+                        (&kick, given.pending),
+                        start,
+                        held(lanes),
+                        whose.opening,
+                    );
+                    // All at once they would wait for each other.
+                    arrays.position.prefetch(start + AHEAD);
+                    arrays.velocity.prefetch(start + AHEAD);
+                    let known = (&arrays.stressed, start);
+                    stress.update(&deformation, slot.start, bodies, whose, known);
+                    arrays.stressed.0.prefetch(start + AHEAD);
+                    end(
+                        simd,
+                        &mut motion,
+                        sums.next(),
+                        &mut stress.points,
+                        &mut stress.booked,
+                        &mut kick,
+                        &cells,
+                        gravity,
+                    );
+                    keep(
+                        simd,
+                        &mut motion,
+                        sums.next(),
+                        &mut stress.points,
+                        &mut arrays,
+                        simd,
+                        start,
+                        lanes,
+                        whose.opening,
+                    );
+                    arrays.stressed.1.prefetch(start + AHEAD);
+                    arrays.stressed.2.prefetch(start + AHEAD);
+                    stress.book_plastic();
+                }
                 if !stays {
                     continue;
                 }
@@ -206,6 +237,17 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     cells.worked = sums[3];
     cells.summed = if stays { Summed::All } else { Summed::Nothing };
     (least.0 <= 0.0, crossing)
+}
+
+/// Whether no slot is taken for a usual one, to see that both ways are the same.
+#[cfg(test)]
+fn in_parts() -> bool {
+    tests::IN_PARTS.load(std::sync::atomic::Ordering::Relaxed)
+}
+
+#[cfg(not(test))]
+fn in_parts() -> bool {
+    false
 }
 
 type Arrays<'a> = (
@@ -298,5 +340,114 @@ for_each_simd! {
         points.keep(simd, &mut arrays.stressed, start, lanes);
         arrays.position.keep(simd, &motion.position, start, lanes);
         arrays.velocity.keep(simd, &carried.velocity, start, lanes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::material::{LinearElastic, Material, MohrCoulomb, MohrCoulombParameters};
+    use crate::mesh::box_mesh;
+    use crate::plan::*;
+    use crate::{Simulation, Vec3};
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    /// Other tests that run meanwhile should not notice.
+    pub static IN_PARTS: AtomicBool = AtomicBool::new(false);
+
+    /// Soil that is thrown up, yields, opens and crosses elements.
+    fn heap(model: Material) -> Simulation {
+        let (min, max) = (Vec3::ZERO, Vec3::new(1.0, 1.0, 1.5));
+        let mesh = box_mesh(Vec3::new(3.0, 1.0, 3.0), [6, 2, 6]).unwrap();
+        let surface = |name| mesh.surface(name).unwrap();
+        let bottom = surface("z-min");
+        let sides = ["x-min", "x-max", "y-min", "y-max"].map(surface);
+        let plan = Plan {
+            title: String::new(),
+            gravity: Vec3::new(0.0, 0.0, -9.81),
+            mesh,
+            symmetry: None,
+            materials: vec![NamedMaterial {
+                name: "soil".into(),
+                density: 1800.0,
+                model,
+            }],
+            bodies: vec![Body {
+                name: "heap".into(),
+                place: Place::Region(Region::Box { min, max }),
+                material: 0,
+                seeding: Seeding::Four,
+            }],
+            boundaries: vec![
+                Boundary {
+                    name: "floor".into(),
+                    surfaces: vec![bottom],
+                    kind: BoundaryKind::Fixed {
+                        directions: [true; 3],
+                    },
+                },
+                Boundary {
+                    name: "sides".into(),
+                    surfaces: sides.to_vec(),
+                    kind: BoundaryKind::Roller,
+                },
+            ],
+            loads: vec![],
+            contacts: vec![],
+            probes: vec![],
+            initial_stress: None,
+            inherited: Default::default(),
+            mesh_motion: None,
+            numerics: Numerics::default(),
+            stages: vec![Stage::new("run", Until::Steps(150))],
+        };
+        let mut sim = Simulation::new(plan).unwrap();
+        sim.set_velocity(|x| Vec3::new(0.8 * x.z, 0.0, 1.5 * x.z))
+            .unwrap();
+        sim
+    }
+
+    #[test]
+    fn usual_slots_are_the_same_in_parts() {
+        let elastic = LinearElastic {
+            young_modulus: 1e6,
+            poisson_ratio: 0.3,
+        };
+        let parameters = MohrCoulombParameters {
+            cohesion: 100.0,
+            friction_angle: 0.5,
+            dilation_angle: 0.1,
+            tension_cutoff: None,
+        };
+        let cut = MohrCoulombParameters {
+            tension_cutoff: Some(50.0),
+            ..parameters
+        };
+        let soil = |p| Material::MohrCoulomb(MohrCoulomb::new(elastic, p).unwrap());
+        for model in [
+            soil(parameters),
+            soil(cut),
+            Material::LinearElastic(elastic),
+        ] {
+            let run = |in_parts| {
+                IN_PARTS.store(in_parts, Ordering::Relaxed);
+                let mut sim = heap(model.clone());
+                while !sim.finished() {
+                    sim.step().unwrap();
+                }
+                IN_PARTS.store(false, Ordering::Relaxed);
+                sim
+            };
+            let (usual, parts) = (run(false), run(true));
+            assert_eq!(usual.particles.position, parts.particles.position);
+            assert_eq!(usual.particles.velocity, parts.particles.velocity);
+            assert_eq!(usual.particles.stress, parts.particles.stress);
+            assert_eq!(usual.particles.state, parts.particles.state);
+            assert_eq!(usual.particles.volume, parts.particles.volume);
+            let states = &usual.particles.state;
+            let met = |k: usize| states.iter().filter(|state| state[k] > 0.0).count();
+            if matches!(model, Material::MohrCoulomb(_)) {
+                assert!(met(2) > 0 && met(3) > 0, "{} {}", met(2), met(3));
+            }
+        }
     }
 }

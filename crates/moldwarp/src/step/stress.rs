@@ -8,7 +8,8 @@ pub(super) use external::ask;
 use super::strain::{Deformation, growth};
 use crate::Mat3;
 use crate::lanes::{
-    self, Columns, Held, LANES, Lane, Simd, alike, either, for_each_simd, get, only, set,
+    self, Columns, Held, LANES, Lane, Simd, VoigtLanes, alike, either, for_each_simd, get, only,
+    set,
 };
 use crate::material::{Material, STATE_SIZE, Strained};
 use crate::parallel::{Smallest, Sum};
@@ -51,7 +52,7 @@ pub(super) struct Whose<'a> {
     /// None, if they are of several.
     pub body: Option<u16>,
     /// Theirs, if they are of one body.
-    model: Option<&'a Material>,
+    pub model: Option<&'a Material>,
     /// The state variable that is greater than zero where one has opened.
     pub opening: Option<usize>,
 }
@@ -128,6 +129,36 @@ pub(super) struct Booked {
     works: [Lane; 3],
     /// Volume after the step over that before.
     least: Lane,
+}
+
+impl Booked {
+    /// Books the work on a particle of a strain and of what smoothing has taken from its trace, with its stresses before
+    /// (turned) and after, and returns its volume in the middle of the step, m³.
+    #[inline(always)]
+    pub fn add(
+        &mut self,
+        l: usize,
+        [turned, new]: [Voigt; 2],
+        strain: &Voigt,
+        left_out: f64,
+        volume: f64,
+        growth: f64,
+    ) -> f64 {
+        self.least[l] = either(growth < self.least[l], growth, self.least[l]);
+        let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + new[k]));
+        let volume = 0.5 * volume * (1.0 + growth);
+        let left_out = tensor::trace(&middle) * (1.0 / 3.0) * left_out;
+        self.works[0][l] += tensor::dot(&middle, strain) * volume;
+        self.works[1][l] += left_out * volume;
+        volume
+    }
+
+    /// Books what of the work is plastic, J.
+    #[inline(always)]
+    pub fn add_plastic(&mut self, l: usize, plastic: f64) {
+        self.works[0][l] -= plastic;
+        self.works[2][l] += plastic;
+    }
 }
 
 impl<'a> Stresses<'a> {
@@ -314,16 +345,25 @@ impl Points {
     /// Changes a volume and books the work.
     #[inline(always)]
     pub fn book(&mut self, booked: &mut Booked, l: usize) {
-        let Booked { works, least } = booked;
-        let growth = self.growth[l];
-        least[l] = either(growth < least[l], growth, least[l]);
-        let middle = middle_stress(&self.increment, l);
-        let middle_volume = 0.5 * self.volume[l] * (1.0 + growth);
-        let left_out = tensor::trace(&middle) * (1.0 / 3.0) * self.left_out[l];
-        works[0][l] += tensor::dot(&middle, &get(&self.increment.strain, l)) * middle_volume;
-        works[1][l] += left_out * middle_volume;
-        self.middle[l] = middle_volume;
+        let (increment, growth) = (&self.increment, self.growth[l]);
+        let both = [&increment.before, &increment.stress].map(|stress| get(stress, l));
+        let strain = get(&increment.strain, l);
+        let volume = self.volume[l];
+        self.middle[l] = booked.add(l, both, &strain, self.left_out[l], volume, growth);
         self.volume[l] *= growth;
+    }
+
+    /// These are new, and whether any may have opened.
+    #[inline(always)]
+    pub fn come_to(
+        &mut self,
+        stress: VoigtLanes,
+        state: [Lane; STATE_SIZE],
+        volume: Lane,
+        open: bool,
+    ) {
+        (self.increment.stress, self.increment.state) = (stress, state);
+        (self.volume, self.open) = (volume, open);
     }
 
     /// Copies what is new to the particles.
@@ -354,20 +394,12 @@ for_each_simd! {
 for_each_simd! {
     /// Books the plastic part.
     fn book_plastic(points: &Points, booked: &mut Booked) {
-        let (increment, works) = (&points.increment, &mut booked.works);
+        let increment = &points.increment;
         for l in 0..LANES {
-            let plastic_strain = get(&increment.plastic_strain, l);
-            let plastic = tensor::dot(&middle_stress(increment, l), &plastic_strain);
-            let plastic = plastic * points.middle[l];
-            works[0][l] -= plastic;
-            works[2][l] += plastic;
+            let (turned, new) = (get(&increment.before, l), get(&increment.stress, l));
+            let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + new[k]));
+            let plastic = tensor::dot(&middle, &get(&increment.plastic_strain, l));
+            booked.add_plastic(l, plastic * points.middle[l]);
         }
     }
-}
-
-/// Stress in the middle of the step, turned.
-#[inline(always)]
-fn middle_stress(increment: &Strained, l: usize) -> Voigt {
-    let (turned, stress) = (get(&increment.before, l), get(&increment.stress, l));
-    std::array::from_fn(|k| 0.5 * (turned[k] + stress[k]))
 }

@@ -155,16 +155,21 @@ for_each_simd! {
     }
 }
 
-for_each_simd! {
-    /// Adds particles to Σ σ_p V_p and Σ V_p.
-    fn add_stresses(points: &Counted, sum: &mut CellSums) {
-        for l in 0..LANES {
-            let volume = points.volume[l];
-            for k in 0..6 {
-                sum.stress[k][l] += points.stress[k][l] * volume;
-            }
-            sum.volume[l] += volume;
+/// Adds particles to Σ σ_p V_p and Σ V_p, in a kernel.
+#[inline(always)]
+pub(super) fn add_to_stresses(stress: &VoigtLanes, volume: &Lane, sum: &mut CellSums) {
+    for l in 0..LANES {
+        let volume = volume[l];
+        for k in 0..6 {
+            sum.stress[k][l] += stress[k][l] * volume;
         }
+        sum.volume[l] += volume;
+    }
+}
+
+for_each_simd! {
+    fn add_stresses(points: &Counted, sum: &mut CellSums) {
+        add_to_stresses(points.stress, points.volume, sum);
     }
 }
 
@@ -232,6 +237,12 @@ impl Sums {
         (self.empty, self.opened) = (true, false);
     }
 
+    /// Whether the shares of what has not opened have to be summed.
+    #[inline]
+    pub fn has_opened(&self) -> bool {
+        self.opened
+    }
+
     /// Where what comes next is put.
     #[inline]
     pub fn next(&mut self) -> &mut Carried {
@@ -276,9 +287,15 @@ impl Sums {
                 reference.add(medium, l, usize::from(body), x, points.volume[l]);
             }
         }
+        self.count(asked.simd);
+    }
+
+    /// Counts a slot whose particles have been added to the rest.
+    #[inline]
+    pub fn count(&mut self, simd: Simd) {
         self.filled += 1;
         if self.filled == SLOTS {
-            self.add_up(asked.simd);
+            self.add_up(simd);
         }
     }
 

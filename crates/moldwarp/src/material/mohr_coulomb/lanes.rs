@@ -1,78 +1,93 @@
 //! The model's update of particles side by side: the same numbers as [`MohrCoulomb::update`], bit for bit.
 
-use super::super::{State, Strained};
+use super::super::{Advanced, STATE_SIZE, State, Strained};
 use super::{MohrCoulomb, MohrCoulombState, YieldState, equivalent_strain};
-use crate::lanes::{Held, LANES, Lane, Simd, either, for_each_simd, get, held, larger, set};
+use crate::lanes::{
+    Held, LANES, Lane, Simd, VoigtLanes, any, either, for_each_simd, get, held, larger, set,
+};
 use crate::tensor::{self, Voigt};
 
 impl MohrCoulomb {
+    /// [`Material::advance`](super::super::Material::advance).
+    #[inline(always)]
+    pub(in super::super) fn advance(
+        &self,
+        before: &VoigtLanes,
+        strain: &VoigtLanes,
+        held: &Held,
+        stress: &mut VoigtLanes,
+        state: &mut [Lane; STATE_SIZE],
+        dissipated: &mut Lane,
+    ) -> Advanced {
+        // Flags are looked for in loops of their own: one that finds them and computes stays a loop until it is too late
+        // to keep what it computes in registers.
+        let mut unsure = Lane::of(0.0);
+        for l in 0..LANES {
+            let trial = self.predictor(&get(before, l), &get(strain, l));
+            let doubt = (held[l] > 0.0) & !self.surely_elastic(&trial);
+            unsure[l] = either(doubt, 1.0, 0.0);
+            set(stress, l, trial);
+        }
+        let (doubts, yielded) = (any(&*unsure), any(&*state[3]));
+        state[3] = Lane::of(0.0);
+        let mut advanced = Advanced {
+            changed: doubts | yielded,
+            ..Advanced::default()
+        };
+        if doubts {
+            let mut odd = Lane::of(0.0);
+            for l in 0..LANES {
+                let trial = get(stress, l);
+                let one = One::of(self, &trial);
+                let unsure = unsure[l] > 0.0;
+                odd[l] = either(unsure & one.odd, 1.0, 0.0);
+                let yields = unsure & (one.yielding > 0.0);
+                let new: Voigt = std::array::from_fn(|k| either(yields, one.stress[k], trial[k]));
+                let excess: Voigt = std::array::from_fn(|k| trial[k] - new[k]);
+                let plastic_strain = self.compliance(&excess);
+                let before = get(before, l);
+                let middle: Voigt = std::array::from_fn(|k| 0.5 * (before[k] + new[k]));
+                dissipated[l] = tensor::dot(&middle, &plastic_strain);
+                set(stress, l, new);
+                state[0][l] += equivalent_strain(&plastic_strain);
+                state[1][l] += tensor::trace(&plastic_strain);
+                let opened = larger(state[2][l] + one.opening, 0.0);
+                state[2][l] = either(yields, opened, state[2][l]);
+                state[3][l] = either(yields, one.yielding, 0.0);
+            }
+            advanced.odd = any(&*odd) | self.corners.has_cutoff();
+            (advanced.plastic, advanced.open) = (true, any(&*state[2]));
+        }
+        advanced
+    }
+
     pub(in super::super) fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
-        let (mut unsure, mut met) = (Lane::of(0.0), Met::default());
-        predict(simd, self, s, held(lanes), &mut unsure, &mut met);
-        s.plastic = false;
-        s.changed = met.yielded | met.unsure | met.open;
-        if met.open {
-            for l in 0..lanes {
-                if s.state[2][l] > 0.0 && self.step_if_open(s, l) {
-                    (s.plastic, unsure[l]) = (true, 0.0);
-                }
+        let (state, mut intact, mut advanced) = (s.state, *held(lanes), Advanced::default());
+        for l in 0..lanes {
+            if self.is_open(&get(&s.before, l), &state_of(get(&state, l))) {
+                intact[l] = 0.0;
             }
         }
-        if met.unsure {
-            s.plastic |= self.return_all(simd, s, &mut unsure);
+        advance(simd, self, s, &intact, &mut advanced);
+        if advanced.odd {
+            s.state = state;
         }
+        for l in 0..lanes {
+            let open = intact[l] == 0.0;
+            if open | advanced.odd {
+                let mut state = get(&state, l);
+                let update =
+                    self.update_particle(&get(&s.before, l), &get(&s.strain, l), &mut state);
+                set(&mut s.stress, l, update.stress);
+                set(&mut s.state, l, state);
+                (advanced.plastic, advanced.changed) = (true, true);
+            }
+        }
+        (s.plastic, s.changed) = (advanced.plastic, advanced.changed);
         if s.plastic {
             flow(simd, self, s);
         }
     }
-
-    /// A step of a particle that is open; says whether it is.
-    fn step_if_open(&self, s: &mut Strained, l: usize) -> bool {
-        let (stress, mut state) = (get(&s.before, l), state_of(get(&s.state, l)));
-        if !self.is_open(&stress, &state) {
-            return false;
-        }
-        let step = self.open_step(&stress, &get(&s.strain, l), state.opening);
-        state.opening = (state.opening + step.opening).max(0.0);
-        set(&mut s.stress, l, step.stress);
-        s.state[2][l] = state.opening;
-        s.state[3][l] = f64::from(step.yielding as u8);
-        true
-    }
-
-    /// Returns the predictors that are not sure; says whether any of them yields.
-    fn return_all(&self, simd: Simd, s: &mut Strained, unsure: &mut Lane) -> bool {
-        // In the place of what is unsure comes what has to be returned on its own.
-        let (alone, mut met) = (unsure, Met::default());
-        match self.corners.has_cutoff() {
-            true => met.unsure = true,
-            false => return_unsure(simd, self, s, alone, &mut met),
-        }
-        if !met.unsure {
-            return met.yielded;
-        }
-        for l in (0..LANES).filter(|&l| alone[l] > 0.0) {
-            let step = self.return_map(&get(&s.stress, l));
-            let yielding = f64::from(step.yielding as u8);
-            if yielding > 0.0 {
-                met.yielded = true;
-                set(&mut s.stress, l, step.stress);
-                s.state[2][l] = (s.state[2][l] + step.opening).max(0.0);
-                s.state[3][l] = yielding;
-            }
-        }
-        met.yielded
-    }
-}
-
-/// What particles side by side have been found to be, any of them.
-#[derive(Default)]
-struct Met {
-    /// Their predictors may not be admissible.
-    unsure: bool,
-    open: bool,
-    /// They have yielded, before or now.
-    yielded: bool,
 }
 
 fn state_of(state: State) -> MohrCoulombState {
@@ -81,24 +96,6 @@ fn state_of(state: State) -> MohrCoulombState {
         plastic_volume: state[1],
         opening: state[2],
         yielding: YieldState::Elastic,
-    }
-}
-
-for_each_simd! {
-    /// Elastic predictors, and which of them may not be admissible.
-    fn predict(model: &MohrCoulomb, s: &mut Strained, held: &Held, unsure: &mut Lane, met: &mut Met) {
-        let (mut yielded, mut open, mut doubts) = (false, false, false);
-        for l in 0..LANES {
-            let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
-            set(&mut s.stress, l, trial);
-            let doubt = (held[l] > 0.0) & !model.surely_elastic(&trial);
-            unsure[l] = either(doubt, 1.0, 0.0);
-            doubts |= doubt;
-            open |= (held[l] > 0.0) & (s.state[2][l] > 0.0);
-            yielded |= (held[l] > 0.0) & (s.state[3][l] > 0.0);
-            s.state[3][l] = 0.0;
-        }
-        *met = Met { unsure: doubts, open, yielded };
     }
 }
 
@@ -129,25 +126,10 @@ impl One {
 }
 
 for_each_simd! {
-    /// Returns predictors that are `unsure`, and leaves 1 there where one has to be returned on its own, else 0.
-    fn return_unsure(model: &MohrCoulomb, s: &mut Strained, unsure: &mut Lane, met: &mut Met) {
-        let (mut odd, mut yields) = (false, false);
-        for l in 0..LANES {
-            let trial = get(&s.stress, l);
-            let one = One::of(model, &trial);
-            let returned = unsure[l] > 0.0;
-            unsure[l] = either(returned & one.odd, 1.0, 0.0);
-            odd |= returned & one.odd;
-            let returned = returned & !one.odd & (one.yielding > 0.0);
-            yields |= returned;
-            let opened = larger(s.state[2][l] + one.opening, 0.0);
-            s.state[2][l] = either(returned, opened, s.state[2][l]);
-            s.state[3][l] = either(returned, one.yielding, s.state[3][l]);
-            for k in 0..6 {
-                s.stress[k][l] = either(returned, one.stress[k], trial[k]);
-            }
-        }
-        (met.unsure, met.yielded) = (odd, yields);
+    fn advance(model: &MohrCoulomb, s: &mut Strained, held: &Held, advanced: &mut Advanced) {
+        let mut dissipated = Lane::of(0.0);
+        let Strained { before, strain, stress, state, .. } = s;
+        *advanced = model.advance(before, strain, held, stress, state, &mut dissipated);
     }
 }
 
@@ -158,10 +140,7 @@ for_each_simd! {
             let trial = model.predictor(&get(&s.before, l), &get(&s.strain, l));
             let stress = get(&s.stress, l);
             let excess: Voigt = std::array::from_fn(|k| trial[k] - stress[k]);
-            let strain = model.compliance(&excess);
-            s.state[0][l] += equivalent_strain(&strain);
-            s.state[1][l] += tensor::trace(&strain);
-            set(&mut s.plastic_strain, l, strain);
+            set(&mut s.plastic_strain, l, model.compliance(&excess));
         }
     }
 }

@@ -31,3 +31,21 @@ pub unsafe fn corner(quads: *const f64, nodes: &[[u32; 4]; LANES], i: usize) -> 
         lanes
     }
 }
+
+/// Stores the first numbers of a lane.
+///
+/// # Safety
+/// There must be room for them.
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub unsafe fn store(to: *mut f64, lane: Lane, count: usize) {
+    // SAFETY: the caller's.
+    unsafe {
+        let eight = _mm512_load_pd(lane.as_ptr());
+        if count == LANES {
+            _mm512_storeu_pd(to, eight);
+        } else {
+            _mm512_mask_storeu_pd(to, ((1u32 << count) - 1) as u8, eight);
+        }
+    }
+}

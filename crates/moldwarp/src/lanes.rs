@@ -120,36 +120,45 @@ impl Simd {
 /// What it calls must be inlined, else it is compiled for the least processor. In it, `S` are the instructions
 /// ([`Instructions`](crate::step::Instructions)).
 macro_rules! for_each_simd {
-    ($(#[$doc:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
+    (
+        $(#[$doc:meta])*
+        $vis:vis fn $name:ident $(<const $flag:ident: bool>)? ($($arg:ident: $type:ty),* $(,)?)
+        $(-> $ret:ty)? $body:block
+    ) => {
         $(#[$doc])*
         #[allow(clippy::too_many_arguments)]
-        $vis fn $name(simd: $crate::lanes::Simd, $($arg: $type),*) $(-> $ret)? {
+        $vis fn $name $(<const $flag: bool>)? (
+            simd: $crate::lanes::Simd,
+            $($arg: $type),*
+        ) $(-> $ret)? {
             #[inline(always)]
             #[allow(clippy::too_many_arguments)]
-            fn plain<S: $crate::step::Instructions>($($arg: $type),*) $(-> $ret)? $body
+            fn plain<S: $crate::step::Instructions, $(const $flag: bool)?>(
+                $($arg: $type),*
+            ) $(-> $ret)? $body
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2")]
                 #[allow(clippy::too_many_arguments)]
-                fn avx2($($arg: $type),*) $(-> $ret)? {
-                    plain::<$crate::step::Avx2>($($arg),*)
+                fn avx2 $(<const $flag: bool>)? ($($arg: $type),*) $(-> $ret)? {
+                    plain::<$crate::step::Avx2, $($flag)?>($($arg),*)
                 }
                 #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
                 #[allow(clippy::too_many_arguments)]
-                fn avx512($($arg: $type),*) $(-> $ret)? {
-                    plain::<$crate::step::Avx512>($($arg),*)
+                fn avx512 $(<const $flag: bool>)? ($($arg: $type),*) $(-> $ret)? {
+                    plain::<$crate::step::Avx512, $($flag)?>($($arg),*)
                 }
                 if simd.has_avx512() {
                     // SAFETY: `Simd` is made only where the processor has it.
-                    return unsafe { avx512($($arg),*) };
+                    return unsafe { avx512 $(::<$flag>)? ($($arg),*) };
                 }
                 if simd.has_avx2() {
                     // SAFETY: as above.
-                    return unsafe { avx2($($arg),*) };
+                    return unsafe { avx2 $(::<$flag>)? ($($arg),*) };
                 }
             }
             let _ = simd;
-            plain::<$crate::step::Plain>($($arg),*)
+            plain::<$crate::step::Plain, $($flag)?>($($arg),*)
         }
     };
 }

@@ -134,10 +134,10 @@ impl Material {
         }
     }
 
-    /// The same in a kernel, of particles none of which has opened before: new stresses and state variables, and what a
-    /// volume dissipates, J/m³, where any is plastic. None where a model has only the ways above.
+    /// The same in a kernel: new stresses and state variables, and what a volume dissipates, J/m³, where any is plastic. If
+    /// not `OPEN`, none has opened before. None where a model has only the ways above.
     #[inline(always)]
-    pub(crate) fn advance(
+    pub(crate) fn advance<const OPEN: bool>(
         &self,
         before: &VoigtLanes,
         strain: &VoigtLanes,
@@ -148,7 +148,7 @@ impl Material {
     ) -> Option<Advanced> {
         match self {
             Material::MohrCoulomb(soil) => {
-                Some(soil.advance(before, strain, held, stress, state, dissipated))
+                Some(soil.advance::<OPEN>(before, strain, held, stress, state, dissipated))
             }
             Material::LinearElastic(elastic) => {
                 for l in 0..LANES {
@@ -189,7 +189,7 @@ impl Material {
 
     /// Whether a particle has opened in tension and not closed again: no bulk stiffness ties its
     /// volume to that of its neighbours.
-    #[inline]
+    #[inline(always)]
     pub fn is_separated(&self, stress: &Voigt, state: &State) -> bool {
         match self {
             Material::LinearElastic(_) | Material::Rigid | Material::External(_) => false,

@@ -130,24 +130,34 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 let mut done = Done::Nothing;
                 if let Some(model) = whose.model.filter(|_| !in_parts()) {
                     let plain = stays && records.medium.is_none() && !sums.has_opened();
-                    done = usual::advance(
-                        simd,
-                        &mut arrays,
-                        &mass[slot.start..],
-                        (start, lanes),
-                        held(lanes),
-                        model,
-                        &shapes,
-                        &deformation,
-                        &mut kick,
-                        given.pending,
-                        gravity,
-                        &mut stress.points,
-                        &mut motion,
-                        &mut stress.booked,
-                        sums.next(),
-                        plain.then_some(&mut *records.sum),
-                    );
+                    let mut advance = |open| {
+                        let advance = match open {
+                            false => usual::advance::<false>,
+                            true => usual::advance::<true>,
+                        };
+                        advance(
+                            simd,
+                            &mut arrays,
+                            &mass[slot.start..],
+                            (start, lanes),
+                            held(lanes),
+                            model,
+                            &shapes,
+                            &deformation,
+                            &mut kick,
+                            given.pending,
+                            gravity,
+                            &mut stress.points,
+                            &mut motion,
+                            &mut stress.booked,
+                            sums.next(),
+                            plain.then_some(&mut *records.sum),
+                        )
+                    };
+                    done = advance(false);
+                    if done == Done::NothingAsOpen {
+                        done = advance(true);
+                    }
                 }
                 prefetch(&[mass], slot.start + AHEAD);
                 prefetch_bodies(body, slot.start + AHEAD);

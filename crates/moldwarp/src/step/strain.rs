@@ -10,7 +10,8 @@ use crate::lanes::{
 };
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
-use crate::{Mat3, Vec3, tensor};
+use crate::tensor::{self, Voigt};
+use crate::{Mat3, Vec3};
 use std::ops::Range;
 
 pub(super) fn run(sim: &mut Simulation) {
@@ -117,6 +118,23 @@ for_each_simd! {
     }
 }
 
+impl Deformation {
+    /// Strain of a particle, the part of its trace that smoothing has taken away, and its volume after the step over that
+    /// before. What is separated keeps its cell's own trace.
+    #[inline(always)]
+    pub fn of_particle(&self, l: usize, separated: bool) -> (Voigt, f64, f64) {
+        let mut strain = get(&self.strain, l);
+        let given_back = either(separated, self.left_out[l] * (1.0 / 3.0), 0.0);
+        (0..3).for_each(|k| strain[k] += given_back);
+        let own = growth(self.volumetric[l]);
+        (
+            strain,
+            either(separated, 0.0, self.left_out[l]),
+            either(separated, own, self.growth[l]),
+        )
+    }
+}
+
 /// Trace of [`midpoint`]: with the invariants of ∇Δu, (I₁ + I₂ + ¾ I₃) / (1 + ½ I₁ + ¼ I₂ + ⅛ I₃).
 #[inline(always)]
 fn volumetric(gradient: &Mat3) -> f64 {
@@ -129,7 +147,7 @@ fn volumetric(gradient: &Mat3) -> f64 {
 
 /// Volume after a strain over that before, exact for a homogeneous compression.
 #[inline(always)]
-pub(super) fn growth(volumetric: f64) -> f64 {
+fn growth(volumetric: f64) -> f64 {
     (1.0 + 0.5 * volumetric) / (1.0 - 0.5 * volumetric)
 }
 

@@ -5,7 +5,7 @@ mod external;
 pub(crate) use external::Answers;
 pub(super) use external::ask;
 
-use super::strain::{Deformation, growth};
+use super::strain::Deformation;
 use crate::Mat3;
 use crate::lanes::{
     self, Columns, Held, LANES, Lane, Simd, VoigtLanes, alike, either, for_each_simd, get, only,
@@ -382,11 +382,9 @@ for_each_simd! {
     /// Gives what is separated its own volumetric strain.
     fn separate(own: &Deformation, points: &mut Points) {
         for l in 0..LANES {
-            let (separated, left_out) = (points.separated[l], own.left_out[l]);
-            let given_back = left_out * (1.0 / 3.0) * separated;
-            (0..3).for_each(|k| points.increment.strain[k][l] += given_back);
-            points.left_out[l] = left_out * (1.0 - separated);
-            points.growth[l] = growth(own.volumetric[l] - points.left_out[l]);
+            let (strain, left_out, growth) = own.of_particle(l, points.separated[l] > 0.0);
+            set(&mut points.increment.strain, l, strain);
+            (points.left_out[l], points.growth[l]) = (left_out, growth);
         }
     }
 }

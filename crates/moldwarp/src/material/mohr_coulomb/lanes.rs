@@ -1,7 +1,7 @@
 //! The model's update of particles side by side: the same numbers as [`MohrCoulomb::update`], bit for bit.
 
-use super::super::{Advanced, STATE_SIZE, State, Strained};
-use super::{MohrCoulomb, MohrCoulombState, YieldState, equivalent_strain};
+use super::super::{Advanced, STATE_SIZE, Strained};
+use super::{MohrCoulomb, YieldState, equivalent_strain};
 use crate::lanes::{
     Held, LANES, Lane, Simd, VoigtLanes, any, either, for_each_simd, get, held, larger, set,
 };
@@ -10,7 +10,7 @@ use crate::tensor::{self, Voigt};
 impl MohrCoulomb {
     /// [`Material::advance`](super::super::Material::advance).
     #[inline(always)]
-    pub(in super::super) fn advance(
+    pub(in super::super) fn advance<const OPEN: bool>(
         &self,
         before: &VoigtLanes,
         strain: &VoigtLanes,
@@ -21,39 +21,60 @@ impl MohrCoulomb {
     ) -> Advanced {
         // Flags are looked for in loops of their own: one that finds them and computes stays a loop until it is too late
         // to keep what it computes in registers.
-        let mut unsure = Lane::of(0.0);
+        let (mut unsure, mut gaps, mut widening) = (*held, Lane::of(0.0), Lane::of(0.0));
         for l in 0..LANES {
             let trial = self.predictor(&get(before, l), &get(strain, l));
-            let doubt = (held[l] > 0.0) & !self.surely_elastic(&trial);
-            unsure[l] = either(doubt, 1.0, 0.0);
             set(stress, l, trial);
+        }
+        if OPEN {
+            for l in 0..LANES {
+                let gap = Gap::of(self, &get(before, l), &get(strain, l), state[2][l]);
+                (gaps[l], widening[l]) = (gap.kind, gap.widening);
+                for k in 0..6 {
+                    stress[k][l] = either(gap.kind > 0.0, gap.trial[k], stress[k][l]);
+                }
+                unsure[l] = either(gap.kind < STAYS, unsure[l], 0.0);
+            }
+        }
+        for l in 0..LANES {
+            let sure = self.surely_elastic(&get(stress, l));
+            unsure[l] = either(sure, 0.0, unsure[l]);
         }
         let (doubts, yielded) = (any(&*unsure), any(&*state[3]));
         state[3] = Lane::of(0.0);
         let mut advanced = Advanced {
-            changed: doubts | yielded,
+            changed: doubts | yielded | OPEN,
             ..Advanced::default()
         };
-        if doubts {
+        if doubts | OPEN {
             let mut odd = Lane::of(0.0);
             for l in 0..LANES {
-                let trial = get(stress, l);
+                let mut trial = get(stress, l);
                 let one = One::of(self, &trial);
                 let unsure = unsure[l] > 0.0;
                 odd[l] = either(unsure & one.odd, 1.0, 0.0);
                 let yields = unsure & (one.yielding > 0.0);
                 let new: Voigt = std::array::from_fn(|k| either(yields, one.stress[k], trial[k]));
+                let before = get(before, l);
+                let opening = state[2][l];
+                let (mut wider, mut yielding) = (one.opening, one.yielding);
+                let mut changes = yields;
+                if OPEN {
+                    trial = self.predictor(&before, &get(strain, l));
+                    let returned = either(yields, one.opening, 0.0);
+                    wider = either(gaps[l] < STAYS, returned + widening[l], widening[l]);
+                    yielding = either(yields, yielding, f64::from(YieldState::Tension as u8));
+                    changes |= gaps[l] > 0.0;
+                }
                 let excess: Voigt = std::array::from_fn(|k| trial[k] - new[k]);
                 let plastic_strain = self.compliance(&excess);
-                let before = get(before, l);
                 let middle: Voigt = std::array::from_fn(|k| 0.5 * (before[k] + new[k]));
                 dissipated[l] = tensor::dot(&middle, &plastic_strain);
                 set(stress, l, new);
                 state[0][l] += equivalent_strain(&plastic_strain);
                 state[1][l] += tensor::trace(&plastic_strain);
-                let opened = larger(state[2][l] + one.opening, 0.0);
-                state[2][l] = either(yields, opened, state[2][l]);
-                state[3][l] = either(yields, one.yielding, 0.0);
+                state[2][l] = either(changes, larger(opening + wider, 0.0), opening);
+                state[3][l] = either(changes, yielding, 0.0);
             }
             advanced.odd = any(&*odd) | self.corners.has_cutoff();
             (advanced.plastic, advanced.open) = (true, any(&*state[2]));
@@ -62,26 +83,21 @@ impl MohrCoulomb {
     }
 
     pub(in super::super) fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {
-        let (state, mut intact, mut advanced) = (s.state, *held(lanes), Advanced::default());
-        for l in 0..lanes {
-            if self.is_open(&get(&s.before, l), &state_of(get(&state, l))) {
-                intact[l] = 0.0;
-            }
+        let (state, mut advanced) = (s.state, Advanced::default());
+        match any(&state[2][..lanes]) {
+            true => advance_open(simd, self, s, held(lanes), &mut advanced),
+            false => advance(simd, self, s, held(lanes), &mut advanced),
         }
-        advance(simd, self, s, &intact, &mut advanced);
         if advanced.odd {
-            s.state = state;
-        }
-        for l in 0..lanes {
-            let open = intact[l] == 0.0;
-            if open | advanced.odd {
+            // One by one.
+            for l in 0..lanes {
                 let mut state = get(&state, l);
                 let update =
                     self.update_particle(&get(&s.before, l), &get(&s.strain, l), &mut state);
                 set(&mut s.stress, l, update.stress);
                 set(&mut s.state, l, state);
-                (advanced.plastic, advanced.changed) = (true, true);
             }
+            (advanced.plastic, advanced.changed) = (true, true);
         }
         (s.plastic, s.changed) = (advanced.plastic, advanced.changed);
         if s.plastic {
@@ -90,12 +106,44 @@ impl MohrCoulomb {
     }
 }
 
-fn state_of(state: State) -> MohrCoulombState {
-    MohrCoulombState {
-        plastic_shear: state[0],
-        plastic_volume: state[1],
-        opening: state[2],
-        yielding: YieldState::Elastic,
+/// Of [`Gap::kind`]: it takes up or gives all of the strain.
+const STAYS: f64 = 2.0;
+
+/// An opening as [`MohrCoulomb::open_step`] has it.
+struct Gap {
+    /// 0 if the material is not open, 1 if it closes, [`STAYS`] if not.
+    kind: f64,
+    /// Stress if it is open, before it is returned if it closes.
+    trial: Voigt,
+    /// Change of the opening, before it is returned if it closes.
+    widening: f64,
+}
+
+impl Gap {
+    #[inline(always)]
+    fn of(model: &MohrCoulomb, before: &Voigt, strain: &Voigt, opening: f64) -> Gap {
+        let (tip, bulk) = (model.corners.tip(), model.bulk_modulus);
+        let (mean, volumetric) = (tensor::trace(before) / 3.0, tensor::trace(strain));
+        let mut is_open = (opening > 0.0) & (mean >= -model.negligible);
+        for k in 0..3 {
+            is_open &= (before[k] - mean).abs() <= model.negligible;
+            is_open &= before[k + 3].abs() <= model.negligible;
+        }
+        let trial = mean + bulk * volumetric;
+        let closing = larger(-trial / bulk, 0.0);
+        let closes = closing > opening;
+        let share = (closing - opening) / -volumetric;
+        let share = either(share < 1.0, share, 1.0);
+        let share = either(volumetric < 0.0, share, 0.0);
+        let rest = model.predictor(&[0.0; 6], &strain.map(|e| share * e));
+        let new = either(trial < 0.0, 0.0, trial);
+        let new = either(new > tip, tip, new);
+        let kind = either(closes, 1.0, STAYS);
+        Gap {
+            kind: either(is_open, kind, 0.0),
+            trial: std::array::from_fn(|k| either(closes, rest[k], if k < 3 { new } else { 0.0 })),
+            widening: either(is_open, either(closes, -opening, (trial - new) / bulk), 0.0),
+        }
     }
 }
 
@@ -129,7 +177,16 @@ for_each_simd! {
     fn advance(model: &MohrCoulomb, s: &mut Strained, held: &Held, advanced: &mut Advanced) {
         let mut dissipated = Lane::of(0.0);
         let Strained { before, strain, stress, state, .. } = s;
-        *advanced = model.advance(before, strain, held, stress, state, &mut dissipated);
+        *advanced = model.advance::<false>(before, strain, held, stress, state, &mut dissipated);
+    }
+}
+
+for_each_simd! {
+    /// The same where some may be open.
+    fn advance_open(model: &MohrCoulomb, s: &mut Strained, held: &Held, advanced: &mut Advanced) {
+        let mut dissipated = Lane::of(0.0);
+        let Strained { before, strain, stress, state, .. } = s;
+        *advanced = model.advance::<true>(before, strain, held, stress, state, &mut dissipated);
     }
 }
 
@@ -184,7 +241,11 @@ mod tests {
                 set(
                     &mut s.before,
                     l,
-                    if open { [0.0; 6] } else { within(scale) },
+                    match (open, n % 2) {
+                        (true, 0) => [0.0; 6],
+                        (true, _) => [500.0, 500.0, 500.0, 0.0, 0.0, 0.0],
+                        _ => within(scale),
+                    },
                 );
                 set(&mut s.strain, l, within(1e-3));
                 s.state[2][l] = if open { random.within(0.0, 1e-3) } else { 0.0 };

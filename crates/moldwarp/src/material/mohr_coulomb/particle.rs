@@ -38,9 +38,9 @@ pub(in super::super) fn solid_share(state: &State) -> f64 {
 }
 
 /// Opened, and not compressed again.
-#[inline]
+#[inline(always)]
 pub(in super::super) fn is_separated(stress: &Voigt, state: &State) -> bool {
-    state[OPENING] > 0.0 && crate::tensor::trace(stress) >= 0.0
+    (state[OPENING] > 0.0) & (crate::tensor::trace(stress) >= 0.0)
 }
 
 impl MohrCoulomb {

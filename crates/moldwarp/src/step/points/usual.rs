@@ -1,4 +1,4 @@
-//! The usual slot: full arrays, one body, nothing open. All that the pass does with it is one kernel, so that a particle's
+//! The usual slot: full arrays, and one body. All that the pass does with it is one kernel, so that a particle's
 //! numbers go through registers from the arrays and back. Anything else is done in parts (`points.rs`), with the same bits.
 //!
 //! Arguments that are written are references of their own: in a tuple or a struct they might be the same to the compiler,
@@ -6,9 +6,9 @@
 
 use super::Own;
 use crate::lanes::{
-    AHEAD, Held, LANES, Lane, any, either, for_each_simd, get, load_one, only, set,
+    AHEAD, Held, LANES, Lane, VoigtLanes, any, either, for_each_simd, get, load_one, only, set,
 };
-use crate::material::Material;
+use crate::material::{Advanced, Material, STATE_SIZE};
 use crate::step::CellSums;
 use crate::step::motion::{Motion, go_along, stays};
 use crate::step::shapes::Shapes;
@@ -23,14 +23,17 @@ use crate::{Mat3, Vec3, tensor};
 pub(super) enum Done {
     /// Nothing: it is not a usual one.
     Nothing,
+    /// Nothing: some have opened.
+    NothingAsOpen,
     /// All but Σ σ_p V_p and Σ V_p, and what has to be known for them is at hand: some may have left or opened.
     AllButSums,
     All,
 }
 
 for_each_simd! {
-    /// Advances a slot, given by where it starts and how many particles it has, and adds to `sum`, if there is one.
-    pub(super) fn advance(
+    /// Advances a slot, given by where it starts and how many particles it has, and adds to `sum`, if there is one. If not
+    /// `OPEN`, nothing in it has opened.
+    pub(super) fn advance<const OPEN: bool>(
         arrays: &mut Own,
         mass: &[f64],
         slot: (usize, usize),
@@ -57,40 +60,20 @@ for_each_simd! {
 
         let (mut state, [volume]) = (states.all(start), volumes.all(start));
         let mut volume = only(held, &volume);
-        if let Some(k) = model.opening()
-            && any(&*only(&volume, &state[k])) {
-                return Done::Nothing;
-            }
-        let mut before = stresses.all(start);
+        if let (false, Some(k)) = (OPEN, model.opening())
+            && any(&*only(&volume, &state[k]))
+        {
+            return Done::NothingAsOpen;
+        }
         position.prefetch(start + AHEAD);
         velocity.prefetch(start + AHEAD);
-        for l in 0..LANES {
-            let turn = Mat3::from_cols_array(&get(&deformation.turn, l));
-            let turned = tensor::rotate(&get(&before, l), &turn);
-            set(&mut before, l, turned);
-        }
-        let (mut stress, mut dissipated) = ([Lane::of(0.0); 6], Lane::of(0.0));
-        let strain = &deformation.strain;
-        let advanced = model.advance(&before, strain, &volume, &mut stress, &mut state, &mut dissipated);
+        let mut stress = stresses.all(start);
+        let advanced =
+            turn_and_strain::<OPEN>(model, deformation, &mut stress, &mut state, &mut volume, booked);
         let Some(advanced) = advanced else {
             return Done::Nothing;
         };
-        if advanced.odd {
-            return Done::Nothing;
-        }
         stresses.prefetch(start + AHEAD);
-        let mut middle = Lane::of(0.0);
-        for l in 0..LANES {
-            let both = [&before, &stress].map(|stress| get(stress, l));
-            let (growth, left_out) = (deformation.growth[l], deformation.left_out[l]);
-            middle[l] = booked.add(l, both, &get(strain, l), left_out, volume[l], growth);
-            volume[l] *= growth;
-        }
-        if advanced.plastic {
-            for l in 0..LANES {
-                booked.add_plastic(l, dissipated[l] * middle[l]);
-            }
-        }
         stresses.put::<S>(&stress, start, count);
         volumes.put::<S>(&[volume], start, count);
         if advanced.changed {
@@ -136,4 +119,52 @@ for_each_simd! {
         points.come_to(stress, state, volume, advanced.open);
         Done::AllButSums
     }
+}
+
+/// New stresses, state variables and volumes, and the work on them. None where this is no way to find them: then nothing is
+/// booked.
+#[inline(always)]
+fn turn_and_strain<const OPEN: bool>(
+    model: &Material,
+    deformation: &Deformation,
+    stress: &mut VoigtLanes,
+    state: &mut [Lane; STATE_SIZE],
+    volume: &mut Lane,
+    booked: &mut Booked,
+) -> Option<Advanced> {
+    let (mut before, mut dissipated) = ([Lane::of(0.0); 6], Lane::of(0.0));
+    let (mut strain, mut left_out, mut growth) = (before, dissipated, dissipated);
+    for l in 0..LANES {
+        let old = get(stress, l);
+        if OPEN {
+            let separated = model.is_separated(&old, &get(state, l));
+            let own = deformation.of_particle(l, separated);
+            set(&mut strain, l, own.0);
+            (left_out[l], growth[l]) = (own.1, own.2);
+        }
+        let turn = Mat3::from_cols_array(&get(&deformation.turn, l));
+        set(&mut before, l, tensor::rotate(&old, &turn));
+    }
+    let (strain, left_out, growth) = match OPEN {
+        true => (&strain, &left_out, &growth),
+        false => (
+            &deformation.strain,
+            &deformation.left_out,
+            &deformation.growth,
+        ),
+    };
+    let advanced = model.advance::<OPEN>(&before, strain, volume, stress, state, &mut dissipated);
+    let advanced = advanced.filter(|advanced| !advanced.odd)?;
+    let mut middle = Lane::of(0.0);
+    for l in 0..LANES {
+        let both = [&before, &*stress].map(|stress| get(stress, l));
+        middle[l] = booked.add(l, both, &get(strain, l), left_out[l], volume[l], growth[l]);
+        volume[l] *= growth[l];
+    }
+    if advanced.plastic {
+        for l in 0..LANES {
+            booked.add_plastic(l, dissipated[l] * middle[l]);
+        }
+    }
+    Some(advanced)
 }

@@ -40,15 +40,20 @@ impl DriftWork {
     /// Half the work of a node's forces on its displacement.
     pub fn add(&mut self, node: &Node, gravity: Vec3) {
         let moved = 0.5 * node.moved;
+        let fall = gravity.dot(moved);
         self.total += node.mass * node.acceleration.dot(moved);
         self.internal += node.internal.dot(moved);
-        self.gravity += node.mass * gravity.dot(moved);
-        self.evened += (node.weighed - node.mass) * gravity.dot(moved);
-        self.load += node.load.dot(moved);
-        self.damping += node.damping.dot(moved);
-        self.absorbing += node.absorbing.dot(moved);
-        self.reaction += node.reaction.dot(moved);
+        self.gravity += node.mass * fall;
         self.kinetic += 0.5 * node.mass * node.grid_velocity.length_squared();
+        if node.weighed != node.mass {
+            self.evened += (node.weighed - node.mass) * fall;
+        }
+        if node.is_acted_on {
+            self.load += node.load.dot(moved);
+            self.damping += node.damping.dot(moved);
+            self.absorbing += node.absorbing.dot(moved);
+            self.reaction += node.reaction.dot(moved);
+        }
     }
 }
 

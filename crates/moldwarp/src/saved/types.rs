@@ -30,6 +30,7 @@ saved!(Node {
     velocity,
     acceleration,
     received,
+    is_acted_on,
     load,
     damping,
     absorbing,

@@ -7,8 +7,9 @@
 //! split by a wall has one on each side (`mesh/walls.rs`), and each of these one for every field that
 //! it moves with (`contact`).
 
+use super::corners::{Numbers, TileNodes};
 use crate::contact::Fields;
-use crate::lanes::{LANES, Pile, RECORDS_AHEAD, Tiles, prefetch_record};
+use crate::lanes::{LANES, Pile, Tiles};
 use crate::mesh::{Corner, Mesh, NONE, Walls};
 use crate::particles::Order;
 use std::ops::Range;
@@ -31,7 +32,7 @@ pub struct Active {
     /// Element of each lane of the tiles, or [`NONE`]. A lane that helps another has that one's element.
     pub elements: Vec<u32>,
     /// The four nodes of each lane's cell, as compact numbers; where there is none, those of another one.
-    pub cell_nodes: Vec<[u32; 4]>,
+    pub cell_nodes: Numbers<4>,
     /// Whether a lane is a cell: it is neither empty nor a helper.
     pub is_cell: Vec<bool>,
     /// Field of each lane's cell.
@@ -73,12 +74,10 @@ impl Active {
         &self.node_cells[self.node_offsets[slot] as usize..self.node_offsets[slot + 1] as usize]
     }
 
-    /// The nodes of a tile's cells; those of one that comes later are fetched from memory.
+    /// The nodes of a tile's cells.
     #[inline(always)]
-    pub fn tile_nodes(&self, tile: usize) -> &[[u32; 4]; LANES] {
-        let tiles = self.cell_nodes.as_chunks().0;
-        prefetch_record(tiles, tile + RECORDS_AHEAD);
-        &tiles[tile]
+    pub fn tile_nodes(&self, tile: usize) -> TileNodes<'_> {
+        self.cell_nodes.tile(tile)
     }
 
     /// Number of cells.

@@ -1,7 +1,6 @@
 //! Stages 7 and 8: particles move with the nodes, the mesh moves with its driver and its boundaries,
 //! and each particle's element is found anew.
 
-use super::corners::TileNodes;
 use super::motion::{Crossing, Motion, Search, look};
 use super::shapes::Shapes;
 use super::state::moved;
@@ -106,7 +105,7 @@ fn locate(sim: &mut Simulation) -> Crossing {
         let (mut motion, mut shapes) = (Motion::default(), Shapes::default());
         let mut crossing = Crossing::default();
         for (number, tile) in tiles {
-            let nodes = TileNodes::new(simd, active.tile_nodes(number));
+            let nodes = active.tile_nodes(number);
             shapes.enter(simd, nodes, places);
             for slot in tile.slots() {
                 look(simd, &mut motion, &shapes, &position, slot.start);

@@ -9,7 +9,7 @@
 //! Guests (`guests.rs`) are a portion of all nodes, which is there if they are. More of them only add to what their nodes
 //! have been given.
 
-use super::corners::{Corners, Quad, TileNodes, add_alike, add_corners, add_pairs};
+use super::corners::{Corners, Quad, TileNodes, TilePairs, add_alike, add_corners, add_pairs};
 use super::mass::ConsistentMass;
 use super::state::room_for;
 use crate::lanes::{LANES, Lane, Simd};
@@ -315,14 +315,14 @@ impl<const N: usize> Share<'_, Quad, N> {
 impl Share<'_, f64, 1> {
     /// Gives each pair of nodes of cells its number.
     #[inline]
-    pub fn give_pairs(&mut self, simd: Simd, pairs: &[[u32; 6]; LANES], numbers: &[Lane; 6]) {
-        add_pairs(simd, self.given, self.first, pairs, numbers);
+    pub fn give_pairs(&mut self, pairs: TilePairs, numbers: &[Lane; 6]) {
+        add_pairs(self.given, self.first, pairs, numbers);
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::corners::NO_CORNERS;
+    use super::super::corners::{NO_CORNERS, Numbers};
     use super::*;
 
     /// Cells along a line, each with the next four nodes: every inner node is given each number four times; and those
@@ -333,6 +333,8 @@ mod tests {
         let cells: Vec<[u32; 4]> = (0..(tiles * LANES) as u32)
             .map(|c| std::array::from_fn(|i| c + i as u32))
             .collect();
+        let mut numbers = Numbers::default();
+        cells.iter().for_each(|&cell| numbers.push(cell));
         let mut portions = Portions::default();
         let (own, late) = (tiles - 11, tiles - 4);
         let mut mass = ConsistentMass::default();
@@ -342,16 +344,15 @@ mod tests {
         let cut = portions.cut();
         assert!(own.div_ceil(cut.tiles) <= PORTIONS && cut.tiles >= LEAST);
         let give = |tiles: Range<usize>, mut share: Share<Quad, 2>| {
-            for nodes in cells.as_chunks::<LANES>().0[tiles].iter() {
+            for nodes in tiles.map(|tile| numbers.tile(tile)) {
                 let one = Lane::of(1.0);
-                let numbers: [Lane; 4] = std::array::from_fn(|i| {
+                let own: [Lane; 4] = std::array::from_fn(|i| {
                     Lane::from(std::array::from_fn(|l| f64::from(nodes[l][i])))
                 });
                 let mut vectors = NO_CORNERS;
                 (0..4).for_each(|i| vectors[3 * i] = one);
-                let nodes = TileNodes::new(Simd::best(), nodes);
-                share.give(Simd::best(), nodes, &vectors, &numbers);
-                share.give_alike(Simd::best(), nodes, [&one, &one], Some(&numbers));
+                share.give(Simd::best(), nodes, &vectors, &own);
+                share.give_alike(Simd::best(), nodes, [&one, &one], Some(&own));
             }
         };
         let items = (0..late, portions.shares::<2>());

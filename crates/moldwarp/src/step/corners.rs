@@ -10,7 +10,7 @@ mod avx2;
 mod avx512;
 
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, Simd, for_each_simd};
+use crate::lanes::{LANES, Lane, RECORDS_AHEAD, Simd, for_each_simd, prefetch_record};
 
 /// A vector of a node with one more number, or up to four numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,69 +40,113 @@ impl std::ops::AddAssign for Quad {
     }
 }
 
-/// The nodes of cells side by side, with the numbers that they lie between.
+/// The nodes of cells, or pairs of their nodes, N a cell, and what those of each tile lie between.
+#[derive(Clone, Debug, Default)]
+pub struct Numbers<const N: usize> {
+    cells: Vec<[u32; N]>,
+    /// One a tile. (Asked for in each step, so that what is given by number need not be looked at again.)
+    spans: Vec<Span>,
+}
+
+/// The same of cells side by side.
 #[derive(Clone, Copy)]
-pub struct TileNodes<'a> {
-    cells: &'a [[u32; 4]; LANES],
+pub struct TileNumbers<'a, const N: usize> {
+    cells: &'a [[u32; N]; LANES],
     span: Span,
 }
 
+/// Nodes of the cells of a tile.
+pub type TileNodes<'a> = TileNumbers<'a, 4>;
+/// Pairs of their nodes.
+pub type TilePairs<'a> = TileNumbers<'a, 6>;
+
 /// What numbers lie between.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Span {
     least: u32,
     greatest: u32,
 }
 
 impl Span {
-    /// Of a multiple of 16 numbers.
-    #[inline]
-    fn of(simd: Simd, numbers: &[u32]) -> Span {
-        let mut span = Span::default();
-        find_span(simd, numbers, &mut span);
-        span
-    }
+    const NOTHING: Span = Span {
+        least: u32::MAX,
+        greatest: 0,
+    };
 
-    /// Whether the numbers are among so many from this one on.
-    #[inline]
-    fn is_within(self, from: usize, count: usize) -> bool {
-        self.least as usize >= from && self.greatest as usize - from < count
+    fn add(&mut self, numbers: &[u32]) {
+        for &n in numbers {
+            self.least = self.least.min(n);
+            self.greatest = self.greatest.max(n);
+        }
     }
 }
 
-impl<'a> TileNodes<'a> {
-    #[inline]
-    pub fn new(simd: Simd, cells: &'a [[u32; 4]; LANES]) -> TileNodes<'a> {
-        let span = Span::of(simd, cells.as_flattened());
-        TileNodes { cells, span }
+impl<const N: usize> Numbers<N> {
+    pub fn clear(&mut self) {
+        self.cells.clear();
+        self.spans.clear();
     }
 
+    /// Room for so many more cells.
+    pub fn reserve(&mut self, cells: usize) {
+        self.cells.reserve(cells);
+        self.spans.reserve(cells.div_ceil(LANES));
+    }
+
+    pub fn push(&mut self, cell: [u32; N]) {
+        if self.cells.len().is_multiple_of(LANES) {
+            self.spans.push(Span::NOTHING);
+        }
+        self.cells.push(cell);
+        self.spans.last_mut().expect("there is one").add(&cell);
+    }
+
+    /// Has them changed.
+    pub fn change(&mut self, change: impl FnOnce(&mut [[u32; N]])) {
+        change(&mut self.cells);
+        let tiles = self.cells.chunks(LANES);
+        for (span, tile) in self.spans.iter_mut().zip(tiles) {
+            *span = Span::NOTHING;
+            span.add(tile.as_flattened());
+        }
+    }
+
+    /// Those of a tile; those of one that comes later are fetched from memory.
+    #[inline(always)]
+    pub fn tile(&self, tile: usize) -> TileNumbers<'_, N> {
+        let tiles = self.cells.as_chunks().0;
+        prefetch_record(tiles, tile + RECORDS_AHEAD);
+        TileNumbers {
+            cells: &tiles[tile],
+            span: self.spans[tile],
+        }
+    }
+}
+
+impl<const N: usize> std::ops::Deref for Numbers<N> {
+    type Target = [[u32; N]];
+
+    #[inline(always)]
+    fn deref(&self) -> &[[u32; N]] {
+        &self.cells
+    }
+}
+
+impl<const N: usize> TileNumbers<'_, N> {
     /// Whether they are among so many from this one on.
     #[inline]
     fn are_among(self, from: usize, count: usize) -> bool {
-        self.span.is_within(from, count)
+        let Span { least, greatest } = self.span;
+        least as usize >= from && greatest as usize - from < count
     }
 }
 
-impl std::ops::Deref for TileNodes<'_> {
-    type Target = [[u32; 4]; LANES];
+impl<const N: usize> std::ops::Deref for TileNumbers<'_, N> {
+    type Target = [[u32; N]; LANES];
 
     #[inline(always)]
-    fn deref(&self) -> &[[u32; 4]; LANES] {
+    fn deref(&self) -> &[[u32; N]; LANES] {
         self.cells
-    }
-}
-
-for_each_simd! {
-    fn find_span(numbers: &[u32], span: &mut Span) {
-        // None may be left out: what is among them is not looked at again.
-        assert!(numbers.len().is_multiple_of(16));
-        let (mut least, mut greatest) = (u32::MAX, 0);
-        for &n in numbers.as_chunks::<16>().0.as_flattened() {
-            least = least.min(n);
-            greatest = greatest.max(n);
-        }
-        *span = Span { least, greatest };
     }
 }
 
@@ -262,14 +306,8 @@ pub(super) fn add_corners(
 }
 
 /// Adds to the numbers of pairs of nodes, of which that of pair `first` comes first.
-pub(super) fn add_pairs(
-    simd: Simd,
-    to: &mut [f64],
-    first: usize,
-    pairs: &[[u32; 6]; LANES],
-    numbers: &[Lane; 6],
-) {
-    assert!(Span::of(simd, pairs.as_flattened()).is_within(first, to.len()));
+pub(super) fn add_pairs(to: &mut [f64], first: usize, pairs: TilePairs, numbers: &[Lane; 6]) {
+    assert!(pairs.are_among(first, to.len()));
     for (l, pairs) in pairs.iter().enumerate() {
         for (k, &pair) in pairs.iter().enumerate() {
             // SAFETY: it is among those that are there.
@@ -319,7 +357,9 @@ mod tests {
     fn instructions_change_no_bit() {
         let cells: [[u32; 4]; LANES] =
             std::array::from_fn(|l| std::array::from_fn(|i| 7 + ((l * 3 + i * 5) % 23) as u32));
-        let nodes = |simd| TileNodes::new(simd, &cells);
+        let mut numbers = Numbers::default();
+        cells.into_iter().for_each(|cell| numbers.push(cell));
+        let nodes = numbers.tile(0);
         let number = |k: usize| (k as f64 * 0.37).sin();
         let quads: Vec<Quad> = (0..40)
             .map(|n| Quad(std::array::from_fn(|k| number(4 * n + k))))
@@ -329,7 +369,7 @@ mod tests {
         both(&|simd| {
             let mut corners = NO_CORNERS;
             let mut sums = Lane::of(0.0);
-            load_and_sum(simd, &mut corners, &mut sums, nodes(simd), &quads);
+            load_and_sum(simd, &mut corners, &mut sums, nodes, &quads);
             let vectors = (0..LANES).flat_map(|l| all_corners(&corners, l));
             let sums = sums.iter().map(|&sum| Quad([sum, 0.0, 0.0, 0.0]));
             vectors.map(Quad::from).chain(sums).collect()
@@ -339,27 +379,20 @@ mod tests {
         both(&|simd| {
             let mut sums = vec![Quad::default(); 23];
             let fourth = std::array::from_fn(|k| lane(k + 12));
-            add_corners(simd, &mut sums, 7, nodes(simd), &vectors, &fourth);
+            add_corners(simd, &mut sums, 7, nodes, &vectors, &fourth);
+            add_alike(simd, &mut sums, 7, nodes, [&lane(20), &lane(21)], None);
             add_alike(
                 simd,
                 &mut sums,
                 7,
-                nodes(simd),
-                [&lane(20), &lane(21)],
-                None,
-            );
-            add_alike(
-                simd,
-                &mut sums,
-                7,
-                nodes(simd),
+                nodes,
                 [&lane(22), &lane(23)],
                 Some(&fourth),
             );
             sums
         });
         let mut corners = NO_CORNERS;
-        load_nodes(Simd::best(), &mut corners, nodes(plain), &quads);
+        load_nodes(Simd::best(), &mut corners, nodes, &quads);
         let expected = quads[cells[5][2] as usize].vector();
         assert_eq!(corner(&corners, 5, 2), expected);
     }
@@ -371,7 +404,9 @@ mod tests {
         let mut sums = vec![Quad::default(); 3];
         let cells = [[5, 6, 7, 8]; LANES];
         let zero = Lane::of(0.0);
-        let nodes = TileNodes::new(Simd::best(), &cells);
+        let mut numbers = Numbers::default();
+        cells.into_iter().for_each(|cell| numbers.push(cell));
+        let nodes = numbers.tile(0);
         add_alike(Simd::best(), &mut sums, 5, nodes, [&zero, &zero], None);
     }
 }

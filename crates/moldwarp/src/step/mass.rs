@@ -5,8 +5,8 @@
 
 use super::BLOCK;
 use super::collect::Portions;
-use super::corners::Quad;
-use crate::lanes::{LANES, RECORDS_AHEAD, Simd, for_each_simd, prefetch_record};
+use super::corners::{Numbers, Quad, TilePairs};
+use crate::lanes::{Simd, for_each_simd};
 use crate::parallel::fold;
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub struct ConsistentMass {
     /// Number of each node's first pair with a node of a higher number, and one past the last.
     first: Vec<u32>,
     /// Pairs of the nodes of each lane's cell, in the order of [`PAIRS`].
-    pairs: Vec<[u32; 6]>,
+    pairs: Numbers<6>,
     /// Where the links of each node begin, and one past the last.
     links: Vec<u32>,
     linked: Vec<Link>,
@@ -88,11 +88,13 @@ impl ConsistentMass {
         for n in 0..nodes {
             first[n + 1] += first[n];
         }
-        for (own, cell) in pairs.iter_mut().zip(cell_nodes) {
-            for (pair, (low, _)) in own.iter_mut().zip(ends(cell)) {
-                *pair += first[low];
+        pairs.change(|pairs| {
+            for (own, cell) in pairs.iter_mut().zip(cell_nodes) {
+                for (pair, (low, _)) in own.iter_mut().zip(ends(cell)) {
+                    *pair += first[low];
+                }
             }
-        }
+        });
         let count = first[nodes] as usize;
         values.clear();
         values.resize(count, 0.0);
@@ -120,10 +122,8 @@ impl ConsistentMass {
 
     /// Pairs of the nodes of a tile's cells.
     #[inline(always)]
-    pub fn tile_pairs(&self, tile: usize) -> &[[u32; 6]; LANES] {
-        let tiles = self.pairs.as_chunks().0;
-        prefetch_record(tiles, tile + RECORDS_AHEAD);
-        &tiles[tile]
+    pub fn tile_pairs(&self, tile: usize) -> TilePairs<'_> {
+        self.pairs.tile(tile)
     }
 
     /// Adds up what portions have for each pair.

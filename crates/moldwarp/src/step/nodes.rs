@@ -6,6 +6,7 @@ use super::{BLOCK, Node, contact, rigid};
 use crate::boundary::AbsorbingNode;
 use crate::measure::{DriftWork, Forces};
 use crate::parallel::fold;
+use crate::plan::Until;
 use crate::simulation::Simulation;
 use crate::{Mat3, Vec3};
 use std::ops::Range;
@@ -18,6 +19,8 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     apply_loads(sim);
     let damping = sim.local_damping();
     let Simulation {
+        plan,
+        clock,
         active,
         nodes,
         cells,
@@ -32,6 +35,11 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     let weighs = reference.is_some();
     let (active, gravity, portions) = (&*active, *gravity, &cells.portions);
     let (constraints, absorbing) = (&*constraints, &*absorbing);
+    let booking = Booking {
+        gravity,
+        drifted: before > 0.0,
+        judged: matches!(plan.stages[clock.stage].until, Until::Equilibrium { .. }),
+    };
     // Else other nodes and bodies have a say.
     let alone = contacts.rigid.is_empty() && contacts.meetings.is_empty();
     let items = (0..nodes.len(), &mut nodes[..], &mut shared.given[..]);
@@ -61,12 +69,12 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             let constraint = constraints.of(mesh_node);
             // What a constraint or an absorbing boundary holds is balanced and not to be damped.
             let free = constraint.map_or(Mat3::IDENTITY, |c| c.free);
-            let absorbing = absorbing.of(mesh_node);
-            let driving = unbalanced + absorbing.map_or(Vec3::ZERO, AbsorbingNode::support);
+            let boundary = absorbing.of(mesh_node);
+            let driving = unbalanced + boundary.map_or(Vec3::ZERO, AbsorbingNode::support);
             node.damping = free * (-damping * (free * driving).abs() * signs(node.velocity));
             let mut force = unbalanced + node.damping;
             node.absorbing = Vec3::ZERO;
-            if let Some(boundary) = absorbing {
+            if let Some(boundary) = boundary {
                 // The velocity that has moved the boundary, if it has moved.
                 let begin = if before > 0.0 {
                     node.grid_velocity
@@ -78,13 +86,16 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 force += node.absorbing;
             }
             node.acceleration = force / node.mass;
+            node.reaction = Vec3::ZERO;
             if let Some(constraint) = constraint {
                 let held = constraints.acceleration(constraint, node.velocity, h);
                 node.acceleration = constraint.free * node.acceleration + held;
+                node.reaction = node.acceleration * node.mass - force;
             }
-            node.reaction = node.acceleration * node.mass - force;
+            let held = constraint.is_some() || boundary.is_some();
+            node.is_acted_on = held || damping != 0.0 || node.load != Vec3::ZERO;
             if alone {
-                book(node, given, gravity, before > 0.0, &mut books);
+                book(node, given, &booking, &mut books);
             }
         }
         books
@@ -94,7 +105,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
     } else {
         rigid::predict(sim, h);
         contact::kick(sim, before, after);
-        book_all(sim, before > 0.0)
+        book_all(sim, &booking)
     };
     sim.ledger.kick(work);
     sim.watch.forces = forces;
@@ -103,26 +114,36 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
 /// Half the work of the nodes' forces in the last drift, and their sums.
 type Books = (DriftWork, Forces);
 
+/// What is booked of nodes.
+struct Booking {
+    gravity: Vec3,
+    /// Whether there has been a drift.
+    drifted: bool,
+    /// Whether the stage ends in equilibrium.
+    judged: bool,
+}
+
 /// Books a node's forces, and gives its acceleration to the nodes around.
 #[inline]
-fn book(node: &Node, given: &mut Quad, gravity: Vec3, drifted: bool, books: &mut Books) {
+fn book(node: &Node, given: &mut Quad, booking: &Booking, books: &mut Books) {
     *given = node.acceleration.into();
     if node.mass == 0.0 {
         return;
     }
-    books.1.add(node, gravity);
-    if drifted {
-        books.0.add(node, gravity);
+    if booking.judged {
+        books.1.add(node, booking.gravity);
+    }
+    if booking.drifted {
+        books.0.add(node, booking.gravity);
     }
 }
 
-fn book_all(sim: &mut Simulation, drifted: bool) -> Books {
-    let gravity = sim.gravity;
+fn book_all(sim: &mut Simulation, booking: &Booking) -> Books {
     let items = (&sim.nodes[..], &mut sim.shared.given[..]);
     fold(items, BLOCK, &|(nodes, given): (&[Node], &mut [Quad])| {
         let mut books = Books::default();
         for (node, given) in nodes.iter().zip(given) {
-            book(node, given, gravity, drifted, &mut books);
+            book(node, given, booking, &mut books);
         }
         books
     })

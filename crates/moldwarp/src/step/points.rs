@@ -6,7 +6,6 @@
 
 mod usual;
 
-use super::corners::TileNodes;
 use super::motion::{Crossing, Motion, Search};
 use super::shapes::Shapes;
 use super::state::Summed;
@@ -110,7 +109,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         // Work of the particles' stresses in the halves of the drift.
         let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
         for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
-            let nodes = TileNodes::new(simd, active.tile_nodes(number));
+            let nodes = active.tile_nodes(number);
             shapes.enter(simd, nodes, &shared.places);
             deformation.enter(simd, &shapes, nodes, shared, smoothing);
             stress.points.enter();

@@ -43,6 +43,7 @@ pub(super) fn predict(sim: &mut Simulation, h: f64) {
             let node = &mut nodes[slot];
             let force = *gravity * node.weighed + node.load;
             node.damping = Vec3::ZERO;
+            node.is_acted_on = true;
             node.moved = moved;
             node.reaction = body.free * force - force;
         }

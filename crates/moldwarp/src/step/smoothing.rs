@@ -23,7 +23,7 @@
 //! `collapse-smoothing`). It is offered for comparison and is not the default.
 
 use super::collect::{Portions, Shares};
-use super::corners::{NO_CORNERS, Quad, TileNodes, all_corners, load_nodes, sum_nodes};
+use super::corners::{NO_CORNERS, Quad, all_corners, load_nodes, sum_nodes};
 use super::shapes::Shapes;
 use super::{BLOCK, CellForce, Cells, Shared, strain, to_nodes};
 use crate::lanes::{LANES, Lane, either, get};
@@ -110,7 +110,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         let (mut traces, mut weights) = (Lane::of(0.0), Lane::of(0.0));
         let (mut shapes, mut share) = (Shapes::default(), shares.begin());
         for tile in tiles {
-            let (force, nodes) = (&known[tile], TileNodes::new(simd, active.tile_nodes(tile)));
+            let (force, nodes) = (&known[tile], active.tile_nodes(tile));
             shapes.enter(simd, nodes, places);
             for l in 0..LANES {
                 traces[l] = tensor::trace(&get(&force.stress, l));
@@ -133,7 +133,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
         let (mut means, mut shapes) = (Lane::of(0.0), Shapes::default());
         let mut share = shares.begin();
         for (tile, force) in tiles.zip(forces) {
-            let nodes = TileNodes::new(simd, active.tile_nodes(tile));
+            let nodes = active.tile_nodes(tile);
             shapes.enter(simd, nodes, places);
             sum_nodes(&mut means, nodes, mean_stress);
             load_nodes(simd, &mut moved, nodes, drift);

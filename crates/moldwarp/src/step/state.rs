@@ -21,6 +21,8 @@ pub struct Node {
     pub acceleration: Vec3,
     /// What particles receive of it, corrected for averaging, m/s².
     pub received: Vec3,
+    /// Whether any of the next four may not be zero.
+    pub is_acted_on: bool,
     /// Loads.
     pub load: Vec3,
     /// Local damping.

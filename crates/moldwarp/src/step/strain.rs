@@ -225,7 +225,7 @@ fn gradients(sim: &mut Simulation) {
         let mut share = shares.begin();
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
         for tile in tiles {
-            let nodes = TileNodes::new(simd, active.tile_nodes(tile));
+            let nodes = active.tile_nodes(tile);
             shapes.enter(simd, nodes, &shared.places);
             prefetch_record(sums, tile + RECORDS_AHEAD);
             let weighed = Weighed {

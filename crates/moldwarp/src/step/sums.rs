@@ -8,7 +8,7 @@ mod late;
 pub(super) use late::run;
 
 use super::collect::{Cut, Share, Shares};
-use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, corner, set_corner};
+use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, TilePairs, corner, set_corner};
 use super::mass::PAIRS;
 use super::stress::Whose;
 use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference};
@@ -315,7 +315,7 @@ impl Sums {
         tile: Contents,
         records: &mut Records,
         nodes: TileNodes,
-        pairs: &[[u32; 6]; LANES],
+        pairs: TilePairs,
         (to_nodes, to_pairs): &mut Giving,
     ) {
         let sum = &mut *records.sum;
@@ -329,7 +329,7 @@ impl Sums {
         to_nodes.give(simd, nodes, &self.momentum, &self.mass);
         let alike = [&sum.solid, &sum.mass];
         to_nodes.give_alike(simd, nodes, alike, Some(&self.squares));
-        to_pairs.give_pairs(simd, pairs, &self.pairs);
+        to_pairs.give_pairs(pairs, &self.pairs);
         tile.gather(sum.lanes());
         if let Some(medium) = &mut records.medium {
             tile.gather(medium.lanes());

@@ -1,6 +1,5 @@
 //! The stable time step, Δt = C min h_e / c_e.
 
-use super::corners::TileNodes;
 use super::shapes::Shapes;
 use super::{CellFill, CellMedium, CellSums, correction};
 use crate::Vec3;
@@ -142,7 +141,7 @@ fn shortest_at(sim: &Simulation) -> Vec3 {
     let (mut steps, mut shapes) = (Steps::default(), Shapes::default());
     let mut shortest = (f64::INFINITY, 0);
     for tile in 0..active.own_tiles() {
-        let nodes = TileNodes::new(*simd, active.tile_nodes(tile));
+        let nodes = active.tile_nodes(tile);
         shapes.enter(*simd, nodes, &shared.places);
         let (sum, fill) = (&cells.sums[tile], &cells.fills[tile]);
         steps.add(*simd, &limits, &shapes, sum, cells.medium.get(tile), fill);

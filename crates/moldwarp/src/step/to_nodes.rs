@@ -162,7 +162,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             let mut densities = Lane::of(0.0);
             let mut forces = forces.map(|forces| forces.iter_mut());
             for (tile, fill) in range.zip(fills) {
-                let nodes = TileNodes::new(simd, active.tile_nodes(tile));
+                let nodes = active.tile_nodes(tile);
                 let kept = forces.as_mut().and_then(|forces| forces.next());
                 let force = kept.unwrap_or(&mut passing);
                 shapes.enter_and_sum(simd, &mut densities, nodes, &shared.places);

@@ -274,7 +274,7 @@ fn settle(sim: &mut Simulation, pending: Pending) {
         let mut kick = Kick::default();
         let (mut x, mut v) = ([Lane::of(0.0); 3], [Lane::of(0.0); 3]);
         for (number, tile) in tiles {
-            let nodes = TileNodes::new(simd, active.tile_nodes(number));
+            let nodes = active.tile_nodes(number);
             shapes.enter(simd, nodes, places);
             kick.enter(simd, &given, nodes, &shapes);
             for slot in tile.slots() {

@@ -5,7 +5,6 @@
 //! the pass then finds their answers where it would call another model. Works and volumes it books as
 //! for any other.
 
-use super::super::corners::TileNodes;
 use super::super::shapes::Shapes;
 use super::super::strain::Deformation;
 use super::{Arrays, Bodies, Points};
@@ -258,7 +257,7 @@ fn collect(sim: &mut Simulation, to: &mut Talk) {
         let (mut own, mut shapes) = (Deformation::default(), Shapes::default());
         let (mut points, mut bodies) = (Points::default(), Bodies::new(plan));
         for (number, tile) in tiles {
-            let nodes = TileNodes::new(simd, active.tile_nodes(number));
+            let nodes = active.tile_nodes(number);
             shapes.enter(simd, nodes, &shared.places);
             own.enter(simd, &shapes, nodes, shared, smoothing);
             points.enter();

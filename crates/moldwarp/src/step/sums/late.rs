@@ -11,7 +11,7 @@ use crate::parallel::Split;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
 use crate::step::CellSums;
-use crate::step::corners::{Corners, NO_CORNERS, TileNodes, all_corners, load_nodes};
+use crate::step::corners::{Corners, NO_CORNERS, all_corners, load_nodes};
 use crate::step::shapes::Shapes;
 use crate::step::state::Summed;
 use crate::step::strain;
@@ -117,7 +117,7 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
         let (mut moved, mut work) = (NO_CORNERS, Lane::of(0.0));
         let mut shapes = Shapes::default();
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
-            let nodes = TileNodes::new(asked.simd, active.tile_nodes(number));
+            let nodes = active.tile_nodes(number);
             let pairs = mass.tile_pairs(number);
             shapes.enter(asked.simd, nodes, &shared.places);
             sums.enter(&mut records);

@@ -9,11 +9,14 @@
 //! Guests (`guests.rs`) are a portion of all nodes, which is there if they are. More of them only add to what their nodes
 //! have been given.
 
-use super::corners::{Corners, Quad, TileNodes, TilePairs, add_alike, add_corners, add_pairs};
+use super::corners::{
+    Corners, Quad, TileNodes, TilePairs, add_alike, add_both, add_corners, add_pairs,
+};
 use super::mass::ConsistentMass;
-use super::state::room_for;
+
 use crate::lanes::{LANES, Lane, Simd};
 use crate::parallel::{self, Split, Sum};
+use crate::particles::Column;
 use std::ops::{AddAssign, Range};
 
 /// Portions that cells are cut into, unless they would have fewer tiles than [`LEAST`].
@@ -36,11 +39,12 @@ pub struct Portions {
 
 /// What items that have numbers have been given by portions.
 #[derive(Clone, Debug, Default)]
-pub struct Collected<T> {
+pub struct Collected<T: Copy + Default> {
     windows: Vec<Window>,
     /// Windows without that of guests.
     own: usize,
-    given: Vec<T>,
+    /// (A node's two quads lie on one line of the cache.)
+    given: Column<T>,
 }
 
 /// How tiles are cut into portions.
@@ -167,7 +171,9 @@ impl<T: Copy + Default> Collected<T> {
         self.own = self.windows.len();
         self.windows.reserve(1);
         let room = (self.count() + guests) * most;
-        room_for(&mut self.given, room);
+        if self.given.capacity() < room {
+            self.given = Column::with_capacity(room + room / 8);
+        }
         self.resize(most);
     }
 
@@ -216,11 +222,12 @@ fn sum_windows<T: Copy + Default + AddAssign, const N: usize>(
         if both.is_empty() {
             continue;
         }
+        let at = window.before + both.start - own.start;
+        let given = &given.as_chunks::<N>().0[at..at + both.len()];
+        let to = both.start - items.start;
         for (k, sums) in sums.iter_mut().enumerate() {
-            let at = N * window.before + k * window.count + both.start - own.start;
-            let given = &given[at..at + both.len()];
-            for (sum, given) in sums[both.start - items.start..].iter_mut().zip(given) {
-                *sum += *given;
+            for (sum, given) in sums[to..to + both.len()].iter_mut().zip(given) {
+                *sum += given[k];
             }
         }
     }
@@ -260,10 +267,9 @@ impl<T: Send, const N: usize> Split for Shares<'_, T, N> {
     }
 }
 
-/// What the items of one portion are given: number after number of all items.
+/// What the items of one portion are given, item after item.
 pub struct Share<'a, T, const N: usize> {
     first: usize,
-    count: usize,
     given: &'a mut [T],
 }
 
@@ -280,35 +286,46 @@ impl<'a, T: Copy + Default, const N: usize> Shares<'a, T, N> {
         let (first, count) = (self.windows.first()).map_or((0, 0), |w| (w.first, w.count));
         Share {
             first,
-            count,
             given: &mut self.given[..N * count],
         }
     }
 }
 
-impl<const N: usize> Share<'_, Quad, N> {
-    fn quad(&mut self, k: usize) -> &mut [Quad] {
-        &mut self.given[k * self.count..(k + 1) * self.count]
-    }
-
-    /// Gives each node of cells its vector and a number, as its first quad.
+impl Share<'_, Quad, 1> {
+    /// Gives each node of cells its vector and a number.
     #[inline]
     pub fn give(&mut self, simd: Simd, nodes: TileNodes, vectors: &Corners, fourth: &[Lane; 4]) {
-        let first = self.first;
-        add_corners(simd, self.quad(0), first, nodes, vectors, fourth);
+        add_corners(simd, self.given, self.first, nodes, vectors, fourth);
     }
 
-    /// Gives all nodes of cells the same two numbers, and each one of its own, as their last quad.
+    /// Gives all nodes of cells the same two numbers.
     #[inline]
-    pub fn give_alike(
+    pub fn give_alike(&mut self, simd: Simd, nodes: TileNodes, numbers: [&Lane; 2]) {
+        add_alike(simd, self.given, self.first, nodes, numbers);
+    }
+}
+
+impl Share<'_, Quad, 2> {
+    /// Gives each node of cells its vector and a number, and two that are the same for all of a cell's with one of its own.
+    #[inline]
+    pub fn give(
         &mut self,
         simd: Simd,
         nodes: TileNodes,
-        numbers: [&Lane; 2],
-        own: Option<&[Lane; 4]>,
+        vectors: &Corners,
+        fourth: &[Lane; 4],
+        alike: [&Lane; 2],
+        own: &[Lane; 4],
     ) {
-        let first = self.first;
-        add_alike(simd, self.quad(N - 1), first, nodes, numbers, own);
+        let (given, _) = self.given.as_chunks_mut();
+        add_both(
+            simd,
+            given,
+            self.first,
+            nodes,
+            (vectors, fourth),
+            (alike, own),
+        );
     }
 }
 
@@ -351,8 +368,8 @@ mod tests {
                 });
                 let mut vectors = NO_CORNERS;
                 (0..4).for_each(|i| vectors[3 * i] = one);
-                share.give(Simd::best(), nodes, &vectors, &own);
-                share.give_alike(Simd::best(), nodes, [&one, &one], Some(&own));
+                let alike = [&one, &one];
+                share.give(Simd::best(), nodes, &vectors, &own, alike, &own);
             }
         };
         let items = (0..late, portions.shares::<2>());

@@ -316,27 +316,59 @@ pub(super) fn add_pairs(to: &mut [f64], first: usize, pairs: TilePairs, numbers:
     }
 }
 
-/// Adds to numbers of nodes, as [`add_corners`], two that are alike for all corners, and perhaps one for each.
+/// Adds to numbers of nodes, as [`add_corners`], two that are alike for all corners.
 pub(super) fn add_alike(
     simd: Simd,
     to: &mut [Quad],
     first: usize,
     nodes: TileNodes,
     [a, b]: [&Lane; 2],
-    own: Option<&[Lane; 4]>,
 ) {
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::add_alike(to, first, nodes, [a, b], own) };
+        return unsafe { avx2::add_alike(to, first, nodes, [a, b]) };
     }
     let _ = simd;
     for (four, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
         for i in 0..4 {
             for (j, cell) in cells.iter().enumerate() {
                 let l = 4 * four + j;
-                let own = own.map_or(0.0, |own| own[i][l]);
-                to[cell[i] as usize - first] += Quad([a[l], b[l], own, 0.0]);
+                to[cell[i] as usize - first] += Quad([a[l], b[l], 0.0, 0.0]);
+            }
+        }
+    }
+}
+
+/// Adds to numbers of nodes a vector and a number for each corner, and two that are alike for all corners with one for each.
+pub(super) fn add_both(
+    simd: Simd,
+    to: &mut [[Quad; 2]],
+    first: usize,
+    nodes: TileNodes,
+    own: (&Corners, &[Lane; 4]),
+    alike: ([&Lane; 2], &[Lane; 4]),
+) {
+    #[cfg(target_arch = "x86_64")]
+    if simd.has_avx512() {
+        // SAFETY: the processor has the instructions.
+        return unsafe { avx512::add_both(to, first, nodes, own, alike) };
+    }
+    #[cfg(target_arch = "x86_64")]
+    if simd.has_avx2() {
+        // SAFETY: the processor has the instructions.
+        return unsafe { avx2::add_both(to, first, nodes, own, alike) };
+    }
+    let _ = simd;
+    let ((vectors, fourth), ([a, b], third)) = (own, alike);
+    for (four, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
+        for i in 0..4 {
+            for (j, cell) in cells.iter().enumerate() {
+                let l = 4 * four + j;
+                let [x, y, z] = corner(vectors, l, i).to_array();
+                let to = &mut to[cell[i] as usize - first];
+                to[0] += Quad([x, y, z, fourth[i][l]]);
+                to[1] += Quad([a[l], b[l], third[i][l], 0.0]);
             }
         }
     }
@@ -380,15 +412,11 @@ mod tests {
             let mut sums = vec![Quad::default(); 23];
             let fourth = std::array::from_fn(|k| lane(k + 12));
             add_corners(simd, &mut sums, 7, nodes, &vectors, &fourth);
-            add_alike(simd, &mut sums, 7, nodes, [&lane(20), &lane(21)], None);
-            add_alike(
-                simd,
-                &mut sums,
-                7,
-                nodes,
-                [&lane(22), &lane(23)],
-                Some(&fourth),
-            );
+            add_alike(simd, &mut sums, 7, nodes, [&lane(20), &lane(21)]);
+            let mut both = vec![[Quad::default(); 2]; 23];
+            let alike = ([&lane(22), &lane(23)], &fourth);
+            add_both(simd, &mut both, 7, nodes, (&vectors, &fourth), alike);
+            sums.extend(both.as_flattened());
             sums
         });
         let mut corners = NO_CORNERS;
@@ -407,6 +435,6 @@ mod tests {
         let mut numbers = Numbers::default();
         cells.into_iter().for_each(|cell| numbers.push(cell));
         let nodes = numbers.tile(0);
-        add_alike(Simd::best(), &mut sums, 5, nodes, [&zero, &zero], None);
+        add_alike(Simd::best(), &mut sums, 5, nodes, [&zero, &zero]);
     }
 }

@@ -65,14 +65,22 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
             let (internal, weighed) = pushed(sum);
             node.internal = internal;
             node.weighed = if weighs { weighed } else { node.mass };
-            let unbalanced = internal + gravity * node.weighed + node.load;
-            let constraint = constraints.of(mesh_node);
+            let (constraint, boundary) = (constraints.of(mesh_node), absorbing.of(mesh_node));
+            let mut force = internal + gravity * node.weighed;
+            let held = constraint.is_some() || boundary.is_some();
+            if !(held || damping != 0.0 || node.is_acted_on) {
+                node.acceleration = force / node.mass;
+                if alone {
+                    book(node, given, &booking, &mut books);
+                }
+                continue;
+            }
+            force += node.load;
             // What a constraint or an absorbing boundary holds is balanced and not to be damped.
             let free = constraint.map_or(Mat3::IDENTITY, |c| c.free);
-            let boundary = absorbing.of(mesh_node);
-            let driving = unbalanced + boundary.map_or(Vec3::ZERO, AbsorbingNode::support);
+            let driving = force + boundary.map_or(Vec3::ZERO, AbsorbingNode::support);
             node.damping = free * (-damping * (free * driving).abs() * signs(node.velocity));
-            let mut force = unbalanced + node.damping;
+            force += node.damping;
             node.absorbing = Vec3::ZERO;
             if let Some(boundary) = boundary {
                 // The velocity that has moved the boundary, if it has moved.
@@ -92,7 +100,6 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
                 node.acceleration = constraint.free * node.acceleration + held;
                 node.reaction = node.acceleration * node.mass - force;
             }
-            let held = constraint.is_some() || boundary.is_some();
             node.is_acted_on = held || damping != 0.0 || node.load != Vec3::ZERO;
             if alone {
                 book(node, given, &booking, &mut books);
@@ -199,7 +206,9 @@ fn apply_loads(sim: &mut Simulation) {
         let cell = active.cell(e, fields.of(particles.body[p]));
         let cell = cell.expect("the element of a particle is a cell of its field");
         for (slot, share) in active.cell_nodes[cell].into_iter().zip(n) {
-            nodes[slot as usize].load += force * share;
+            let node = &mut nodes[slot as usize];
+            node.load += force * share;
+            node.is_acted_on = true;
         }
     }
 }

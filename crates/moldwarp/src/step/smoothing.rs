@@ -116,7 +116,7 @@ pub(super) fn stresses(sim: &mut Simulation, before: f64) {
                 traces[l] = tensor::trace(&get(&force.stress, l));
                 weights[l] = weight(tile, l, &shapes);
             }
-            share.give_alike(simd, nodes, [&traces, &weights], None);
+            share.give_alike(simd, nodes, [&traces, &weights]);
         }
     });
     // q_n: a trace is three times the mean, and a quarter goes to each node.

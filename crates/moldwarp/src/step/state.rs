@@ -10,8 +10,10 @@ use crate::mesh::Mesh;
 use crate::parallel::fold;
 use std::ops::Range;
 
-/// A node that particles touch. Forces in N, work in J.
+/// A node that particles touch. Forces in N, work in J. (Passes over nodes wait for memory: what is asked of all nodes comes
+/// first, what acts on few of them lies on lines of its own.)
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
 pub struct Node {
     /// m_i = Σ m_p N_i, kg.
     pub mass: f64,
@@ -19,9 +21,20 @@ pub struct Node {
     pub velocity: Vec3,
     /// (change of velocity in the kick) / h: F_i / m_i with all that holds the node, m/s².
     pub acceleration: Vec3,
-    /// What particles receive of it, corrected for averaging, m/s².
+    /// The mass whose weight pulls at the node, kg: `mass`, but for a reference stress (see
+    /// `step/reference.rs`).
+    pub weighed: f64,
+    /// What particles receive of the acceleration, corrected for averaging, m/s².
     pub received: Vec3,
-    /// Whether any of the next four may not be zero.
+    /// Σ m_p v_p N_i / m_i of the updated particles, m/s.
+    pub average: Vec3,
+    /// −Σ S ∇N_i of the attached cells.
+    pub internal: Vec3,
+    /// Velocity after the remap, with which the mesh moves the material, m/s.
+    pub grid_velocity: Vec3,
+    /// Δu_i of the last drift, m.
+    pub moved: Vec3,
+    /// Whether any of the following may not be zero.
     pub is_acted_on: bool,
     /// Loads.
     pub load: Vec3,
@@ -31,17 +44,6 @@ pub struct Node {
     pub absorbing: Vec3,
     /// Force of fixities, rollers and prescribed velocities.
     pub reaction: Vec3,
-    /// Σ m_p v_p N_i / m_i of the updated particles, m/s.
-    pub average: Vec3,
-    /// Velocity after the remap, with which the mesh moves the material, m/s.
-    pub grid_velocity: Vec3,
-    /// Δu_i of the last drift, m.
-    pub moved: Vec3,
-    /// The mass whose weight pulls at the node, kg: `mass`, but for a reference stress (see
-    /// `step/reference.rs`).
-    pub weighed: f64,
-    /// −Σ S ∇N_i of the attached cells.
-    pub internal: Vec3,
 }
 
 /// What cells read of nodes, in arrays of their own: they stay in the cache.

@@ -238,7 +238,7 @@ fn gradients(sim: &mut Simulation) {
                 load_nodes(simd, &mut moved, nodes, &shared.moved);
                 more_work(simd, &shapes, &moved, force, &mut works);
             }
-            share.give_alike(simd, nodes, weights.each_ref(), None);
+            share.give_alike(simd, nodes, weights.each_ref());
         }
         works.each_ref().map(lanes::sum)
     });

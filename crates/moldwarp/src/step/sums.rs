@@ -326,9 +326,8 @@ impl Sums {
             (sum.solid, sum.closed) = (sum.volume, sum.volume);
         }
         whole_masses(simd, self, sum);
-        to_nodes.give(simd, nodes, &self.momentum, &self.mass);
-        let alike = [&sum.solid, &sum.mass];
-        to_nodes.give_alike(simd, nodes, alike, Some(&self.squares));
+        let (alike, squares) = ([&sum.solid, &sum.mass], &self.squares);
+        to_nodes.give(simd, nodes, &self.momentum, &self.mass, alike, squares);
         to_pairs.give_pairs(pairs, &self.pairs);
         tile.gather(sum.lanes());
         if let Some(medium) = &mut records.medium {

@@ -93,7 +93,9 @@ fn sum_nodes(sim: &mut Simulation) {
             };
             *filling = volume / whole;
             place.0[3] = either(*filling > FILLED, all_mass / whole, NOT_FULL);
-            node.load = Vec3::ZERO;
+            if node.is_acted_on {
+                node.load = Vec3::ZERO;
+            }
         }
     });
 }

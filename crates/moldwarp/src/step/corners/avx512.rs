@@ -1,6 +1,7 @@
 //! With AVX-512: eight cells at a time.
 
-use super::{LANES, Lane};
+use super::avx2::{four, transpose};
+use super::{Corners, LANES, Lane, Quad, TileNodes};
 use std::arch::x86_64::*;
 
 /// The numbers of node `i` of each cell.
@@ -46,6 +47,36 @@ pub unsafe fn store(to: *mut f64, lane: Lane, count: usize) {
             _mm512_storeu_pd(to, eight);
         } else {
             _mm512_mask_storeu_pd(to, ((1u32 << count) - 1) as u8, eight);
+        }
+    }
+}
+
+/// With both quads of a node at a time.
+#[target_feature(enable = "avx2,avx512f")]
+pub fn add_both(
+    to: &mut [[Quad; 2]],
+    first: usize,
+    nodes: TileNodes,
+    (vectors, fourth): (&Corners, &[Lane; 4]),
+    ([a, b], third): ([&Lane; 2], &[Lane; 4]),
+) {
+    assert!(nodes.are_among(first, to.len()));
+    let zero = _mm256_setzero_pd();
+    for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
+        let (a, b) = (four(a, 4 * k), four(b, 4 * k));
+        for i in 0..4 {
+            let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c], 4 * k));
+            let own = transpose(x, y, z, four(&fourth[i], 4 * k));
+            let alike = transpose(a, b, four(&third[i], 4 * k), zero);
+            for j in 0..4 {
+                let more = _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(own[j]), alike[j]);
+                // SAFETY: all nodes are there, each with eight numbers.
+                unsafe {
+                    let to = to.as_mut_ptr().add(cells[j][i] as usize - first);
+                    let to = to.cast::<f64>();
+                    _mm512_storeu_pd(to, _mm512_add_pd(_mm512_loadu_pd(to), more));
+                }
+            }
         }
     }
 }

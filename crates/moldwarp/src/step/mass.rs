@@ -235,7 +235,7 @@ mod tests {
         mass.renew(&cells, 8);
         assert_eq!(mass.values.len(), 6 + 3 + 6);
         assert_eq!(mass.pairs_of(0..8), 0..15);
-        for (cell, pairs) in cells.iter().zip(&mass.pairs) {
+        for (cell, pairs) in cells.iter().zip(mass.pairs.iter()) {
             for ((i, j), &pair) in PAIRS.into_iter().zip(pairs) {
                 mass.values[pair as usize] =
                     f64::from(10 * cell[i].min(cell[j]) + cell[i].max(cell[j]));

@@ -47,6 +47,10 @@ impl MohrCoulomb {
             ..Advanced::default()
         };
         if doubts | OPEN {
+            if self.corners.has_cutoff() {
+                advanced.odd = true;
+                return advanced;
+            }
             let mut odd = Lane::of(0.0);
             for l in 0..LANES {
                 let mut trial = get(stress, l);
@@ -76,8 +80,8 @@ impl MohrCoulomb {
                 state[2][l] = either(changes, larger(opening + wider, 0.0), opening);
                 state[3][l] = either(changes, yielding, 0.0);
             }
-            advanced.odd = any(&*odd) | self.corners.has_cutoff();
-            (advanced.plastic, advanced.open) = (true, any(&*state[2]));
+            (advanced.odd, advanced.plastic) = (any(&*odd), true);
+            advanced.open = any(&*state[2]);
         }
         advanced
     }

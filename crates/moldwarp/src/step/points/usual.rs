@@ -1,8 +1,10 @@
-//! The usual slot: full arrays, and one body. All that the pass does with it is one kernel, so that a particle's
-//! numbers go through registers from the arrays and back. Anything else is done in parts (`points.rs`), with the same bits.
+//! The usual slot: of one body, of a material that kernels know, and not at the very end of the arrays. All that the pass does
+//! with it is one kernel, so that a particle's numbers go through registers from the arrays and back. Anything else is done
+//! in parts (`points.rs`), with the same bits.
 //!
 //! Arguments that are written are references of their own: in a tuple or a struct they might be the same to the compiler,
-//! and its loops would stay scalar. What is done with stresses comes first, and is stored before positions are loaded: there are not enough registers for both.
+//! and its loops would stay scalar. What is done with stresses comes first, and is stored before positions are loaded:
+//! there are not enough registers for both.
 
 use super::Own;
 use crate::lanes::{

@@ -8,8 +8,11 @@
 //! operation for operation, and sums over lanes are made in the lanes' order, so that results have the same
 //! bits with any instruction set.
 
+mod simd;
 mod tiles;
 
+pub use simd::Simd;
+pub(crate) use simd::for_each_simd;
 pub use tiles::{ByTile, Contents, Pile, Tiles};
 
 use crate::parallel::Split;
@@ -60,109 +63,6 @@ impl Default for Lane {
 
 /// A symmetric tensor for each lane, component by component.
 pub type VoigtLanes = [Lane; 6];
-
-/// Instructions to compute with. Results are the same with all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Simd(Level);
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
-enum Level {
-    Scalar,
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-    #[cfg(target_arch = "x86_64")]
-    Avx512,
-}
-
-impl Default for Simd {
-    fn default() -> Simd {
-        Simd::best()
-    }
-}
-
-impl Simd {
-    /// Names, as `--simd` takes them.
-    pub const NAMES: [&'static str; 3] = ["scalar", "avx2", "avx512"];
-
-    /// The widest that this processor has.
-    pub fn best() -> Simd {
-        let named = Simd::NAMES.iter().rev().find_map(|name| Simd::named(name));
-        named.unwrap_or(Simd(Level::Scalar))
-    }
-
-    /// By its name, if this processor has it.
-    pub fn named(name: &str) -> Option<Simd> {
-        match name {
-            "scalar" => Some(Simd(Level::Scalar)),
-            #[cfg(target_arch = "x86_64")]
-            "avx2" => std::is_x86_feature_detected!("avx2").then_some(Simd(Level::Avx2)),
-            #[cfg(target_arch = "x86_64")]
-            "avx512" => (std::is_x86_feature_detected!("avx512f")
-                && std::is_x86_feature_detected!("avx512dq")
-                && std::is_x86_feature_detected!("avx512vl"))
-            .then_some(Simd(Level::Avx512)),
-            _ => None,
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    pub(crate) fn has_avx512(self) -> bool {
-        self.0 == Level::Avx512
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    pub(crate) fn has_avx2(self) -> bool {
-        self.0 >= Level::Avx2
-    }
-}
-
-/// Compiles a function once for each instruction set, and calls the one that its first argument asks for.
-/// What it calls must be inlined, else it is compiled for the least processor. In it, `S` are the instructions
-/// ([`Instructions`](crate::step::Instructions)).
-macro_rules! for_each_simd {
-    (
-        $(#[$doc:meta])*
-        $vis:vis fn $name:ident $(<const $flag:ident: bool>)? ($($arg:ident: $type:ty),* $(,)?)
-        $(-> $ret:ty)? $body:block
-    ) => {
-        $(#[$doc])*
-        #[allow(clippy::too_many_arguments)]
-        $vis fn $name $(<const $flag: bool>)? (
-            simd: $crate::lanes::Simd,
-            $($arg: $type),*
-        ) $(-> $ret)? {
-            #[inline(always)]
-            #[allow(clippy::too_many_arguments)]
-            fn plain<S: $crate::step::Instructions, $(const $flag: bool)?>(
-                $($arg: $type),*
-            ) $(-> $ret)? $body
-            #[cfg(target_arch = "x86_64")]
-            {
-                #[target_feature(enable = "avx2")]
-                #[allow(clippy::too_many_arguments)]
-                fn avx2 $(<const $flag: bool>)? ($($arg: $type),*) $(-> $ret)? {
-                    plain::<$crate::step::Avx2, $($flag)?>($($arg),*)
-                }
-                #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
-                #[allow(clippy::too_many_arguments)]
-                fn avx512 $(<const $flag: bool>)? ($($arg: $type),*) $(-> $ret)? {
-                    plain::<$crate::step::Avx512, $($flag)?>($($arg),*)
-                }
-                if simd.has_avx512() {
-                    // SAFETY: `Simd` is made only where the processor has it.
-                    return unsafe { avx512 $(::<$flag>)? ($($arg),*) };
-                }
-                if simd.has_avx2() {
-                    // SAFETY: as above.
-                    return unsafe { avx2 $(::<$flag>)? ($($arg),*) };
-                }
-            }
-            let _ = simd;
-            plain::<$crate::step::Plain, $($flag)?>($($arg),*)
-        }
-    };
-}
-pub(crate) use for_each_simd;
 
 /// Tile and lane of a cell.
 #[inline(always)]
@@ -328,26 +228,14 @@ impl<'a, const N: usize> Columns<'a, N> {
         }
     }
 
-    /// As [`Columns::store`], for kernels: mostly there are as many as there are lanes.
-    #[inline(always)]
-    pub fn keep(&mut self, simd: Simd, lanes: &[Lane; N], start: usize, count: usize) {
-        if count < LANES || self.len() < LANES || start > self.len() - LANES {
-            return self.store(simd, lanes, start, count);
-        }
-        for (lane, column) in lanes.iter().zip(&mut self.0) {
-            // SAFETY: all columns have the length that has been looked at.
-            unsafe { *column.as_mut_ptr().add(start).cast() = **lane };
-        }
-    }
-
     /// Copies the first numbers of lanes to the particles from `start` on.
     #[inline(never)]
     pub fn store(&mut self, simd: Simd, lanes: &[Lane; N], start: usize, count: usize) {
         assert!(count <= LANES && start <= self.len() && count <= self.len() - start);
         #[cfg(target_arch = "x86_64")]
         if simd.has_avx512() {
-            // SAFETY: the processor has the instructions.
-            return unsafe { self.store_avx512(lanes, start, count) };
+            // The library's copy of so few numbers takes longer to be called than to copy.
+            return self.put::<crate::step::Avx512>(lanes, start, count);
         }
         let _ = simd;
         for (lane, column) in lanes.iter().zip(&mut self.0) {
@@ -355,24 +243,6 @@ impl<'a, const N: usize> Columns<'a, N> {
             match to.first_chunk_mut::<LANES>() {
                 Some(all) => *all = **lane,
                 None => to.copy_from_slice(&lane[..count]),
-            }
-        }
-    }
-
-    /// The library's copy of so few numbers takes longer to be called than to copy.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f")]
-    fn store_avx512(&mut self, lanes: &[Lane; N], start: usize, count: usize) {
-        use std::arch::x86_64::{_mm512_loadu_pd, _mm512_mask_storeu_pd};
-        let held = (1u32 << count) - 1;
-        for (lane, column) in lanes.iter().zip(&mut self.0) {
-            for (k, eight) in lane.as_chunks::<8>().0.iter().enumerate() {
-                // SAFETY: no more are written than there are, as has been looked at.
-                unsafe {
-                    let to = column.as_mut_ptr().add(start + 8 * k);
-                    let eight = _mm512_loadu_pd(eight.as_ptr());
-                    _mm512_mask_storeu_pd(to, (held >> (8 * k)) as u8, eight);
-                }
             }
         }
     }
@@ -470,12 +340,6 @@ pub fn sum(lanes: &Lane) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    #[cfg(target_arch = "x86_64")]
-    fn the_widest_have_what_the_narrower_have() {
-        assert!(Simd(Level::Avx512).has_avx2() && !Simd(Level::Scalar).has_avx2());
-    }
 
     #[test]
     fn numbers_go_to_lanes_and_back() {

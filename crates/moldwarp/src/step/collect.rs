@@ -323,8 +323,7 @@ impl Share<'_, Quad, 2> {
             given,
             self.first,
             nodes,
-            (vectors, fourth),
-            (alike, own),
+            ((vectors, fourth), (alike, own)),
         );
     }
 }

@@ -340,27 +340,29 @@ pub(super) fn add_alike(
     }
 }
 
+/// A vector and a number for each corner; two that are alike for all corners, and one for each.
+type Both<'a> = ((&'a Corners, &'a [Lane; 4]), ([&'a Lane; 2], &'a [Lane; 4]));
+
 /// Adds to numbers of nodes a vector and a number for each corner, and two that are alike for all corners with one for each.
 pub(super) fn add_both(
     simd: Simd,
     to: &mut [[Quad; 2]],
     first: usize,
     nodes: TileNodes,
-    own: (&Corners, &[Lane; 4]),
-    alike: ([&Lane; 2], &[Lane; 4]),
+    both: Both,
 ) {
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx512() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx512::add_both(to, first, nodes, own, alike) };
+        return unsafe { avx512::add_both(to, first, nodes, both) };
     }
     #[cfg(target_arch = "x86_64")]
     if simd.has_avx2() {
         // SAFETY: the processor has the instructions.
-        return unsafe { avx2::add_both(to, first, nodes, own, alike) };
+        return unsafe { avx2::add_both(to, first, nodes, both) };
     }
     let _ = simd;
-    let ((vectors, fourth), ([a, b], third)) = (own, alike);
+    let ((vectors, fourth), ([a, b], third)) = both;
     for (four, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
         for i in 0..4 {
             for (j, cell) in cells.iter().enumerate() {
@@ -415,7 +417,7 @@ mod tests {
             add_alike(simd, &mut sums, 7, nodes, [&lane(20), &lane(21)]);
             let mut both = vec![[Quad::default(); 2]; 23];
             let alike = ([&lane(22), &lane(23)], &fourth);
-            add_both(simd, &mut both, 7, nodes, (&vectors, &fourth), alike);
+            add_both(simd, &mut both, 7, nodes, ((&vectors, &fourth), alike));
             sums.extend(both.as_flattened());
             sums
         });

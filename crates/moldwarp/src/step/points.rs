@@ -15,8 +15,8 @@ use super::sums::{self, Arrays as SumArrays, Asked, Carried, Counted, Given as S
 use super::to_particles::{Given, Kick, Pending};
 use crate::Vec3;
 use crate::lanes::{
-    self, AHEAD, ByTile, Columns, Held, LANES, Lane, Simd, for_each_simd, get, held, only,
-    prefetch, prefetch_bodies, set,
+    self, AHEAD, ByTile, Columns, Held, LANES, Lane, for_each_simd, get, held, only, prefetch,
+    prefetch_bodies, set,
 };
 use crate::parallel::Smallest;
 use crate::particles::Particles;
@@ -200,7 +200,6 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                         sums.next(),
                         &mut stress.points,
                         &mut arrays,
-                        simd,
                         start,
                         lanes,
                         whose.opening,
@@ -339,16 +338,15 @@ for_each_simd! {
         carried: &Carried,
         points: &mut Points,
         arrays: &mut Own,
-        simd: Simd,
         start: usize,
         lanes: usize,
         opening: Option<usize>,
     ) {
         motion.look_who_left();
         points.look_for_open(opening);
-        points.keep(simd, &mut arrays.stressed, start, lanes);
-        arrays.position.keep(simd, &motion.position, start, lanes);
-        arrays.velocity.keep(simd, &carried.velocity, start, lanes);
+        points.keep::<S>(&mut arrays.stressed, start, lanes);
+        arrays.position.put::<S>(&motion.position, start, lanes);
+        arrays.velocity.put::<S>(&carried.velocity, start, lanes);
     }
 }
 

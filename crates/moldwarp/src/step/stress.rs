@@ -14,6 +14,7 @@ use crate::lanes::{
 use crate::material::{Material, STATE_SIZE, Strained};
 use crate::parallel::{Smallest, Sum};
 use crate::plan::Plan;
+use crate::step::Instructions;
 use crate::tensor::{self, Voigt};
 
 /// Stresses, state variables and volumes of some particles.
@@ -368,13 +369,13 @@ impl Points {
 
     /// Copies what is new to the particles.
     #[inline(always)]
-    pub fn keep(&self, simd: Simd, to: &mut Arrays, start: usize, lanes: usize) {
+    pub fn keep<S: Instructions>(&self, to: &mut Arrays, start: usize, lanes: usize) {
         let (stresses, states, volumes) = to;
-        stresses.keep(simd, &self.increment.stress, start, lanes);
+        stresses.put::<S>(&self.increment.stress, start, lanes);
         if self.increment.changed {
-            states.keep(simd, &self.increment.state, start, lanes);
+            states.put::<S>(&self.increment.state, start, lanes);
         }
-        volumes.keep(simd, std::array::from_ref(&self.volume), start, lanes);
+        volumes.put::<S>(std::array::from_ref(&self.volume), start, lanes);
     }
 }
 

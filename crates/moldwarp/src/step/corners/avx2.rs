@@ -1,12 +1,12 @@
 //! With AVX2: four cells at a time.
 
-use super::{Corners, LANES, Lane, Quad, TileNodes};
+use super::{Both, Corners, LANES, Lane, Quad, TileNodes};
 use std::arch::x86_64::*;
 
 /// Rows to columns.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub fn transpose(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [__m256d; 4] {
+fn transpose(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [__m256d; 4] {
     let (ab, cd) = (_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d));
     let (ab_odd, cd_odd) = (_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d));
     [
@@ -20,7 +20,7 @@ pub fn transpose(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [__m256d; 4]
 /// Four lanes, beginning with `l`, which is a multiple of four.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub fn four(lane: &Lane, l: usize) -> __m256d {
+fn four(lane: &Lane, l: usize) -> __m256d {
     let four: &[f64; 4] = &lane.as_chunks::<4>().0[l / 4];
     // SAFETY: there are four.
     unsafe { _mm256_loadu_pd(four.as_ptr()) }
@@ -95,23 +95,28 @@ pub fn add_alike(to: &mut [Quad], first: usize, nodes: TileNodes, [a, b]: [&Lane
     }
 }
 
+/// Both quads of corner `i` of the `k`-th four cells.
+#[inline]
 #[target_feature(enable = "avx2")]
-pub fn add_both(
-    to: &mut [[Quad; 2]],
-    first: usize,
-    nodes: TileNodes,
-    (vectors, fourth): (&Corners, &[Lane; 4]),
-    ([a, b], third): ([&Lane; 2], &[Lane; 4]),
-) {
+pub fn rows_of_both(
+    ((vectors, fourth), ([a, b], third)): Both,
+    k: usize,
+    i: usize,
+) -> ([__m256d; 4], [__m256d; 4]) {
+    let four = |lane: &Lane| four(lane, 4 * k);
+    let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c]));
+    let own = transpose(x, y, z, four(&fourth[i]));
+    let alike = transpose(four(a), four(b), four(&third[i]), _mm256_setzero_pd());
+    (own, alike)
+}
+
+#[target_feature(enable = "avx2")]
+pub fn add_both(to: &mut [[Quad; 2]], first: usize, nodes: TileNodes, both: Both) {
     assert!(nodes.are_among(first, to.len()));
     let to = to.as_flattened_mut();
-    let zero = _mm256_setzero_pd();
     for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
-        let (a, b) = (four(a, 4 * k), four(b, 4 * k));
         for i in 0..4 {
-            let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c], 4 * k));
-            let own = transpose(x, y, z, four(&fourth[i], 4 * k));
-            let alike = transpose(a, b, four(&third[i], 4 * k), zero);
+            let (own, alike) = rows_of_both(both, k, i);
             for j in 0..4 {
                 let at = 2 * (cells[j][i] as usize - first);
                 // SAFETY: all nodes are there, each with two.

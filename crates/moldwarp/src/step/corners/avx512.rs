@@ -1,7 +1,7 @@
 //! With AVX-512: eight cells at a time.
 
-use super::avx2::{four, transpose};
-use super::{Corners, LANES, Lane, Quad, TileNodes};
+use super::avx2::rows_of_both;
+use super::{Both, LANES, Lane, Quad, TileNodes};
 use std::arch::x86_64::*;
 
 /// The numbers of node `i` of each cell.
@@ -53,21 +53,11 @@ pub unsafe fn store(to: *mut f64, lane: Lane, count: usize) {
 
 /// With both quads of a node at a time.
 #[target_feature(enable = "avx2,avx512f")]
-pub fn add_both(
-    to: &mut [[Quad; 2]],
-    first: usize,
-    nodes: TileNodes,
-    (vectors, fourth): (&Corners, &[Lane; 4]),
-    ([a, b], third): ([&Lane; 2], &[Lane; 4]),
-) {
+pub fn add_both(to: &mut [[Quad; 2]], first: usize, nodes: TileNodes, both: Both) {
     assert!(nodes.are_among(first, to.len()));
-    let zero = _mm256_setzero_pd();
     for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
-        let (a, b) = (four(a, 4 * k), four(b, 4 * k));
         for i in 0..4 {
-            let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c], 4 * k));
-            let own = transpose(x, y, z, four(&fourth[i], 4 * k));
-            let alike = transpose(a, b, four(&third[i], 4 * k), zero);
+            let (own, alike) = rows_of_both(both, k, i);
             for j in 0..4 {
                 let more = _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(own[j]), alike[j]);
                 // SAFETY: all nodes are there, each with eight numbers.

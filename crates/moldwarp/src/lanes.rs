@@ -101,6 +101,9 @@ pub const AHEAD: usize = 72;
 /// Tiles from one to that whose record should be on its way to the first cache.
 pub const RECORDS_AHEAD: usize = 3;
 
+/// The same where there are few bytes a tile: a line of the cache has those of several.
+pub const NUMBERS_AHEAD: usize = 16;
+
 /// Has the numbers of the particles of a slot fetched from memory, to be near when it is their turn.
 #[inline(always)]
 pub fn prefetch<const N: usize>(columns: &[&[f64]; N], start: usize) {
@@ -136,6 +139,21 @@ pub fn prefetch_record<T>(records: &[T], place: usize) {
             prefetch_line(first.wrapping_add(line), true);
         }
     }
+}
+
+/// The same for lines of a record that comes so many after this one, if there is one.
+#[inline(always)]
+pub fn prefetch_lines<T>(record: &T, ahead: usize, lines: std::ops::Range<usize>) {
+    let first = std::ptr::from_ref(record).wrapping_add(ahead);
+    for line in lines {
+        prefetch_line(first.cast::<[f64; 8]>().wrapping_add(line), true);
+    }
+}
+
+/// The same for a number or few of them, that lie one after another.
+#[inline(always)]
+pub fn prefetch_number<T>(numbers: &[T], place: usize) {
+    prefetch_line(numbers.as_ptr().wrapping_add(place), true);
 }
 
 /// The same for their bodies.

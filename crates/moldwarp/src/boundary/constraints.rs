@@ -26,10 +26,17 @@ pub struct Constraint {
     /// Projects a vector into the directions that are left free.
     pub free: Mat3,
     held: Vec<Held>,
+    /// Whether any direction has a speed. (Most have none, and what is held lies elsewhere in memory.)
+    moves: bool,
 }
 
 crate::saved!(Held { direction, speed });
-crate::saved!(Constraint { node, free, held });
+crate::saved!(Constraint {
+    node,
+    free,
+    held,
+    moves
+});
 crate::saved!(Constraints {
     all,
     of_node,
@@ -41,6 +48,9 @@ crate::saved!(Constraints {
 
 impl Constraint {
     fn velocity(&self, functions: &[f64]) -> Vec3 {
+        if !self.moves {
+            return Vec3::ZERO;
+        }
         let speed = |held: &Held| {
             held.speed
                 .iter()
@@ -137,7 +147,7 @@ impl Constraints {
             let held = velocity - constraint.free * velocity;
             return (self.prescribed(constraint) - held) / h;
         }
-        if constraint.held.iter().all(|held| held.speed.is_empty()) {
+        if !constraint.moves {
             return Vec3::ZERO;
         }
         (self.prescribed(constraint) - constraint.velocity(&self.previous)) / h
@@ -162,6 +172,7 @@ impl Constraints {
                 node,
                 free: Mat3::IDENTITY,
                 held: Vec::new(),
+                moves: false,
             });
         }
         let constraint = &mut self.all[self.of_node[node as usize] as usize];
@@ -177,6 +188,7 @@ impl Constraints {
             speeds.extend(held.speed.iter().map(|&(v, f)| (-share * v, f)));
         }
         speeds.retain(|&(v, _)| v != 0.0);
+        constraint.moves |= !speeds.is_empty();
         let unit = rest / length;
         constraint.held.push(Held {
             direction: unit,

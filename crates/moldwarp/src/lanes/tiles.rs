@@ -1,6 +1,6 @@
 //! How cells and particles lie in memory, and going through them tile by tile.
 
-use super::{LANES, Lane};
+use super::{LANES, Lane, NUMBERS_AHEAD, prefetch_number};
 use crate::parallel::Split;
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -232,6 +232,8 @@ impl<'a, P, C> ByTile<'a, P, C> {
             let [tile, next] = [&tiles.tiles[number], &tiles.tiles[number + 1]];
             let slots = tile.first_slot as usize..next.first_slot as usize + 1;
             let helpers = tile.first_helper as usize..next.first_helper as usize;
+            prefetch_number(&tiles.tiles, number + NUMBERS_AHEAD);
+            prefetch_number(&tiles.slots, slots.start + 4 * NUMBERS_AHEAD);
             let contents = Contents {
                 slots: &tiles.slots[slots],
                 helpers: &tiles.helpers[helpers],

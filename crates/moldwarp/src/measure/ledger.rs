@@ -38,6 +38,7 @@ pub struct DriftWork {
 
 impl DriftWork {
     /// Half the work of a node's forces on its displacement.
+    #[inline(always)]
     pub fn add(&mut self, node: &Node, gravity: Vec3) {
         let moved = 0.5 * node.moved;
         let fall = gravity.dot(moved);

@@ -5,6 +5,7 @@
 
 use super::{Column, Particles};
 use crate::contact::Fields;
+use crate::lanes::{LANES, prefetch_number};
 use crate::parallel::fold;
 use std::ops::Range;
 
@@ -119,6 +120,8 @@ impl Order {
     }
 }
 
+/// Particles from one that is moved to that which should be on its way from memory.
+const MOVES_AHEAD: usize = 128;
 /// Particles that one thread moves at a time.
 const BLOCK: usize = 4096;
 
@@ -133,8 +136,14 @@ fn permute<T: Copy + Default + Send + Sync>(
         &[u32],
         &mut [T],
     )| {
-        for (new, &from) in spare.iter_mut().zip(source) {
-            *new = values[from as usize];
+        // Most come from places that follow each other, as do those of a line of the cache.
+        let later = source.iter().skip(MOVES_AHEAD).step_by(LANES);
+        let later = later.copied().chain(std::iter::repeat(0));
+        for ((new, from), later) in spare.chunks_mut(LANES).zip(source.chunks(LANES)).zip(later) {
+            prefetch_number(values, later as usize);
+            for (new, &from) in new.iter_mut().zip(from) {
+                *new = values[from as usize];
+            }
         }
     });
     std::mem::swap(values, spare);

@@ -29,7 +29,6 @@ saved!(Node {
     mass,
     velocity,
     acceleration,
-    received,
     is_acted_on,
     load,
     damping,

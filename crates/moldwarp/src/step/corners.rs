@@ -10,7 +10,10 @@ mod avx2;
 mod avx512;
 
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, RECORDS_AHEAD, Simd, for_each_simd, prefetch_record};
+use crate::lanes::{
+    LANES, Lane, NUMBERS_AHEAD, RECORDS_AHEAD, Simd, for_each_simd, prefetch_number,
+    prefetch_record,
+};
 
 /// A vector of a node with one more number, or up to four numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -116,6 +119,7 @@ impl<const N: usize> Numbers<N> {
     pub fn tile(&self, tile: usize) -> TileNumbers<'_, N> {
         let tiles = self.cells.as_chunks().0;
         prefetch_record(tiles, tile + RECORDS_AHEAD);
+        prefetch_number(&self.spans, tile + NUMBERS_AHEAD);
         TileNumbers {
             cells: &tiles[tile],
             span: self.spans[tile],

@@ -121,23 +121,24 @@ pub(super) fn receive(sim: &mut Simulation, h: f64) {
         given, received, ..
     } = shared;
     let change = Change::new(plan.numerics.mass, &cells.mass, *simd, given);
-    let items = (0..nodes.len(), &mut nodes[..], &mut received[..]);
+    let items = (0..nodes.len(), &nodes[..], &mut received[..]);
     let gain = fold(items, BLOCK, &|(slots, nodes, received): (
         Range<usize>,
-        &mut [Node],
+        &[Node],
         &mut [Quad],
     )| {
         let (mut gain, mut flows) = (0.0, [Quad::default(); BLOCK]);
         change.flows(slots.clone(), &mut flows);
         for (((slot, node), received), &flow) in slots.zip(nodes).zip(received).zip(&flows) {
+            node.prefetch(0..1);
             let change = change.at(node.mass, flow);
-            node.received = node.acceleration
-                + match constraints.of(active.nodes[slot]) {
-                    Some(constraint) => constraint.free * change,
-                    None => change,
-                };
-            *received = node.received.into();
-            gain += h * node.mass * node.velocity.dot(node.received);
+            let change = match constraints.of(active.nodes[slot]) {
+                Some(constraint) => constraint.free * change,
+                None => change,
+            };
+            let own = node.acceleration + change;
+            *received = own.into();
+            gain += h * node.mass * node.velocity.dot(own);
         }
         gain
     });

@@ -51,6 +51,7 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) {
         let (mut sums, mut books) = ([Quad::default(); BLOCK], Books::default());
         (portions.nodes).own_sums(slots.clone(), &mut [&mut sums]);
         for (((slot, node), &sum), given) in slots.zip(nodes).zip(&sums).zip(given) {
+            node.prefetch(0..3);
             if node.mass == 0.0 {
                 let grid = (node.grid_velocity, node.moved);
                 *node = Node {
@@ -195,6 +196,12 @@ fn apply_loads(sim: &mut Simulation) {
         guests,
         ..
     } = sim;
+    if plan.loads.is_empty() {
+        return;
+    }
+    fold(&mut nodes[..], BLOCK, &|nodes: &mut [Node]| {
+        nodes.iter_mut().for_each(|node| node.load = Vec3::ZERO);
+    });
     let mesh = &plan.mesh;
     for point in loads.iter() {
         let p = guests.whereabouts(point.particle as usize, particles);

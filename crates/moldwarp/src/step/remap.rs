@@ -60,6 +60,7 @@ fn hold(sim: &mut Simulation) {
         &mut [Quad],
     )| {
         for ((slot, node), given) in slots.zip(nodes).zip(given) {
+            node.prefetch(1..2);
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.average = constraint.free * node.average + constraints.prescribed(constraint);
             }
@@ -94,6 +95,7 @@ fn correct(sim: &mut Simulation, dt: Option<f64>) {
         let (mut work, mut flows) = (DriftWork::default(), [Quad::default(); BLOCK]);
         change.flows(slots.clone(), &mut flows);
         for (((slot, node), moved), &flow) in slots.zip(nodes).zip(moved).zip(&flows) {
+            node.prefetch(0..3);
             node.grid_velocity = node.average + change.at(node.mass, flow);
             if let Some(constraint) = constraints.of(active.nodes[slot]) {
                 node.grid_velocity =

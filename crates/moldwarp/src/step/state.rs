@@ -5,7 +5,7 @@ use super::collect::Portions;
 use super::corners::Quad;
 use super::mass::ConsistentMass;
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, VoigtLanes, lane_of};
+use crate::lanes::{LANES, Lane, VoigtLanes, lane_of, prefetch_lines};
 use crate::mesh::Mesh;
 use crate::parallel::fold;
 use std::ops::Range;
@@ -24,8 +24,6 @@ pub struct Node {
     /// The mass whose weight pulls at the node, kg: `mass`, but for a reference stress (see
     /// `step/reference.rs`).
     pub weighed: f64,
-    /// What particles receive of the acceleration, corrected for averaging, m/s².
-    pub received: Vec3,
     /// Σ m_p v_p N_i / m_i of the updated particles, m/s.
     pub average: Vec3,
     /// −Σ S ∇N_i of the attached cells.
@@ -46,6 +44,17 @@ pub struct Node {
     pub reaction: Vec3,
 }
 
+/// Nodes from one to that of which lines should be on their way to the first cache.
+const NODES_AHEAD: usize = 8;
+
+impl Node {
+    /// Has lines of a node that comes later fetched from memory.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, lines: Range<usize>) {
+        prefetch_lines(self, NODES_AHEAD, lines);
+    }
+}
+
 /// What cells read of nodes, in arrays of their own: they stay in the cache.
 #[derive(Clone, Debug, Default)]
 pub struct Shared {
@@ -59,7 +68,7 @@ pub struct Shared {
     pub moved: Vec<Quad>,
     /// What nodes exchange: accelerations or velocities.
     pub given: Vec<Quad>,
-    /// What particles receive of the last kick, m/s².
+    /// What particles receive of the acceleration of the last kick, corrected for averaging, m/s².
     pub received: Vec<Quad>,
     /// Velocities that particles are drawn to by relaxation, m/s; none without it.
     pub grid: Vec<Quad>,

@@ -13,7 +13,9 @@ use super::mass::PAIRS;
 use super::stress::Whose;
 use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference};
 use crate::Vec3;
-use crate::lanes::{Contents, LANES, Lane, Simd, VoigtLanes, for_each_simd, get, set};
+use crate::lanes::{
+    Contents, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, for_each_simd, get, prefetch_lines, set,
+};
 use crate::material::STATE_SIZE;
 use crate::plan::Plan;
 
@@ -400,8 +402,11 @@ pub(super) fn arrays(
 /// The records of tiles, one after another.
 pub(super) fn each((sums, medium): Arrays) -> impl Iterator<Item = Records> {
     let mut medium = medium.map(|medium| medium.iter_mut());
-    sums.iter_mut().map(move |sum| Records {
-        sum,
-        medium: medium.as_mut().and_then(|medium| medium.next()),
+    sums.iter_mut().map(move |sum| {
+        prefetch_lines(sum, RECORDS_AHEAD, 0..size_of::<CellSums>() / 64);
+        Records {
+            sum,
+            medium: medium.as_mut().and_then(|medium| medium.next()),
+        }
     })
 }

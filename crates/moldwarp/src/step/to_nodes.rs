@@ -7,8 +7,8 @@ use super::time_step::{Limits, Steps};
 use super::{Active, BLOCK, CellFill, CellForce, CellMedium, CellSums, Cells, Node};
 use super::{smoothing, strain, sums};
 use crate::lanes::{
-    self, LANES, Lane, RECORDS_AHEAD, Simd, either, for_each_simd, get, lane_of, prefetch_record,
-    set,
+    self, LANES, Lane, NUMBERS_AHEAD, RECORDS_AHEAD, Simd, either, for_each_simd, get, lane_of,
+    prefetch_number, prefetch_record, set,
 };
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
@@ -73,6 +73,10 @@ fn sum_nodes(sim: &mut Simulation) {
         for (((slot, node), sums), ((filling, place), own)) in
             slots.zip(nodes).zip(sums).zip(numbers)
         {
+            node.prefetch(0..1);
+            if let Some(&later) = active.nodes.get(slot + NUMBERS_AHEAD) {
+                prefetch_number(&mesh.node_volumes, later as usize);
+            }
             let (&Quad([x, y, z, mass]), &Quad([volume, all_mass, square, _])) = sums;
             *own = square;
             let momentum = Vec3::new(x, y, z);
@@ -93,9 +97,6 @@ fn sum_nodes(sim: &mut Simulation) {
             };
             *filling = volume / whole;
             place.0[3] = either(*filling > FILLED, all_mass / whole, NOT_FULL);
-            if node.is_acted_on {
-                node.load = Vec3::ZERO;
-            }
         }
     });
 }

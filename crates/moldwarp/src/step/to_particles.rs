@@ -152,11 +152,8 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let [gain, square] = exchange(
         sim,
         |shared| &shared.received,
-        |node, product| {
-            let works = [
-                node.momentum().dot(node.received),
-                product.dot(node.received),
-            ];
+        |node, received, product| {
+            let works = [node.momentum().dot(received), product.dot(received)];
             node.average = match node.mass {
                 0.0 => Vec3::ZERO,
                 mass => node.velocity + product * (h / mass),
@@ -167,14 +164,14 @@ pub(super) fn run(sim: &mut Simulation, before: f64, after: f64) -> f64 {
     let free = first + h * gain + 0.5 * h * h * square;
     let mut kinetic = free;
     if blend > 0.0 {
-        let own = |node: &Node| Quad::from(node.velocity + node.received * h);
-        sim.shared.grid.clear();
-        sim.shared.grid.extend(sim.nodes.iter().map(own));
+        let Shared { grid, received, .. } = &mut sim.shared;
+        let own = |(node, received): (&Node, &Quad)| node.velocity + received.vector() * h;
+        grid.clear();
+        grid.extend(sim.nodes.iter().zip(&*received).map(own).map(Quad::from));
         let [mixed, grid] = exchange(
             sim,
             |shared| &shared.grid,
-            |node, product| {
-                let own = node.velocity + node.received * h;
+            |node, own, product| {
                 let works = [node.mass * node.average.dot(own), product.dot(own)];
                 if node.mass > 0.0 {
                     node.average = node.average * (1.0 - blend) + product * (blend / node.mass);
@@ -198,11 +195,11 @@ impl Node {
     }
 }
 
-/// Calls `work` on each node with Σ_j M_ij w_j of what nodes share, and adds up what it says.
+/// Calls `work` on each node with what it shares, w_i, and Σ_j M_ij w_j, and adds up what it says.
 fn exchange(
     sim: &mut Simulation,
     w: fn(&Shared) -> &[Quad],
-    work: impl Fn(&mut Node, Vec3) -> [f64; 2] + Sync,
+    work: impl Fn(&mut Node, Vec3, Vec3) -> [f64; 2] + Sync,
 ) -> [f64; 2] {
     let Simulation {
         nodes,
@@ -218,9 +215,10 @@ fn exchange(
         &mut [Node],
     )| {
         let (mut all, mut products) = ([0.0; 2], [Quad::default(); BLOCK]);
-        matrix.products(simd, slots, w, &mut products);
-        for (node, product) in nodes.iter_mut().zip(products) {
-            let works = work(node, product.vector());
+        matrix.products(simd, slots.clone(), w, &mut products);
+        for ((node, own), product) in nodes.iter_mut().zip(&w[slots]).zip(&products) {
+            node.prefetch(0..2);
+            let works = work(node, own.vector(), product.vector());
             (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
         }
         all

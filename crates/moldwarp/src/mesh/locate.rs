@@ -17,10 +17,20 @@ impl Mesh {
     /// As [`Mesh::walk`]; the error is the face by which the way leads out of the mesh, if it does not just
     /// go astray.
     pub fn walk_or_leave(&self, start: u32, x: Vec3) -> Result<u32, Option<Face>> {
+        self.walk_on(start, self.barycentric(start as usize, x), x)
+    }
+
+    /// The same where N_i of `start` at `x` are known.
+    #[inline]
+    pub(crate) fn walk_on(
+        &self,
+        start: u32,
+        mut n: [f64; 4],
+        x: Vec3,
+    ) -> Result<u32, Option<Face>> {
         let mut at = start;
         // A walk that visits every element once has gone astray (only possible round holes).
         for _ in 0..=self.tets.len() {
-            let n = self.barycentric(at as usize, x);
             let mut next = NONE;
             let mut farthest = -TOLERANCE;
             let mut inside = true;
@@ -45,6 +55,7 @@ impl Mesh {
                 }));
             }
             at = next;
+            n = self.barycentric(at as usize, x);
         }
         Err(None)
     }

@@ -110,7 +110,8 @@ fn locate(sim: &mut Simulation) -> Crossing {
             for slot in tile.slots() {
                 look(simd, &mut motion, &shapes, &position, slot.start);
                 let own = &mut elements[slot.start - first..];
-                motion.search(&search, slot, own, &mut crossing, |_| ());
+                let n = |l, x| shapes.at(l, x);
+                motion.search(&search, slot, own, n, &mut crossing, |_| ());
             }
         }
         crossing

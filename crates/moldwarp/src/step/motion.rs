@@ -137,14 +137,15 @@ impl Motion {
         self.some_left = any(&*self.left);
     }
 
-    /// Finds the elements of the particles of a slot that have left theirs. Those that have come to another one are
-    /// not here any more, and `gone` is told their lanes.
+    /// Finds the elements of the particles of a slot that have left theirs; `n` are their N_i there. Those that have come
+    /// to another one are not here any more, and `gone` is told their lanes.
     #[inline]
     pub fn search(
         &mut self,
         search: &Search,
         slot: Range<usize>,
         elements: &mut [u32],
+        n: impl Fn(usize, Vec3) -> [f64; 4],
         crossing: &mut Crossing,
         mut gone: impl FnMut(usize),
     ) {
@@ -152,8 +153,11 @@ impl Motion {
             return;
         }
         for (l, p) in slot.enumerate() {
+            if self.left[l] == 0.0 {
+                continue;
+            }
             let x = Vec3::from_array(get(&self.position, l));
-            if self.left[l] != 0.0 && search.walk(p, x, &mut elements[l], crossing) {
+            if search.walk(p, n(l, x), x, &mut elements[l], crossing) {
                 gone(l);
             }
         }
@@ -214,9 +218,16 @@ impl Search<'_> {
         rigid.is_some_and(Option::is_some)
     }
 
-    /// Walks particle `p` to its element. False if that is the one where it was.
-    fn walk(&self, p: usize, x: Vec3, element: &mut u32, crossing: &mut Crossing) -> bool {
-        match self.mesh.walk_or_leave(*element, x) {
+    /// Walks particle `p` to its element from the one where it was, which has these N_i at `x`. False if it still is there.
+    fn walk(
+        &self,
+        p: usize,
+        n: [f64; 4],
+        x: Vec3,
+        element: &mut u32,
+        crossing: &mut Crossing,
+    ) -> bool {
+        match self.mesh.walk_on(*element, n, x) {
             Ok(found) if found == *element => return false,
             Ok(found) => {
                 let field = self.fields.of(self.body[p]);

@@ -197,10 +197,17 @@ impl<'a, const N: usize> Columns<'a, N> {
         assert!(self.has_all(start));
         let mut lanes = [Lane::of(0.0); N];
         for k in 0..N {
-            // SAFETY: all columns have the length that has been looked at.
-            *lanes[k] = unsafe { *self.0[k].as_ptr().add(start).cast() };
+            lanes[k] = self.one(k, start);
         }
         lanes
+    }
+
+    /// One number of each of them.
+    #[inline(always)]
+    pub fn one(&self, k: usize, start: usize) -> Lane {
+        assert!(self.has_all(start));
+        // SAFETY: all columns have the length that has been looked at.
+        Lane::from(unsafe { *self.0[k].as_ptr().add(start).cast::<[f64; LANES]>() })
     }
 
     /// Copies the numbers of particles from `start` on to lanes: as many as there are lanes or particles.
@@ -226,7 +233,13 @@ impl<'a, const N: usize> Columns<'a, N> {
     /// Has the numbers of particles fetched from memory, to be near when it is their turn.
     #[inline(always)]
     pub fn prefetch(&self, start: usize) {
-        for column in &self.0 {
+        self.prefetch_some(0..N, start);
+    }
+
+    /// The same for some of their numbers.
+    #[inline(always)]
+    pub fn prefetch_some(&self, numbers: std::ops::Range<usize>, start: usize) {
+        for column in &self.0[numbers] {
             prefetch_line(column.as_ptr().wrapping_add(start), false);
         }
     }

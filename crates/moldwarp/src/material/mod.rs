@@ -19,6 +19,9 @@ pub const STATE_SIZE: usize = 4;
 /// A particle's state variables; what they are is its model's affair. All zero at the start.
 pub type State = [f64; STATE_SIZE];
 
+/// Of the models that kernels know so many of the first state variables are only ever added to: a step need not know them.
+pub(crate) const SUMMED: usize = 2;
+
 /// Name and unit of a state variable, as they appear in the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StateField {
@@ -135,7 +138,8 @@ impl Material {
     }
 
     /// The same in a kernel: new stresses and state variables, and what a volume dissipates, J/m³, where any is plastic. If
-    /// not `OPEN`, none has opened before. None where a model has only the ways above.
+    /// not `OPEN`, none has opened before. The first [`SUMMED`] state variables may be given as zero: then the changes come
+    /// back. None where a model has only the ways above.
     #[inline(always)]
     pub(crate) fn advance<const OPEN: bool>(
         &self,

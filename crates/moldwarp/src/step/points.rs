@@ -213,7 +213,9 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 }
                 // What has come to another element counts there, as a guest.
                 let elements = &mut elements[start..];
-                let Carried { mass, shapes: n, .. } = sums.next();
+                let Carried {
+                    mass, shapes: n, ..
+                } = sums.next();
                 let (n, volume) = (|l, _| get(n, l), &mut stress.points.volume);
                 motion.search(&search, slot, elements, n, &mut crossing, |l| {
                     (mass[l], volume[l]) = (0.0, 0.0);

@@ -10,7 +10,7 @@ use super::Own;
 use crate::lanes::{
     AHEAD, Held, LANES, Lane, VoigtLanes, any, either, for_each_simd, get, load_one, only, set,
 };
-use crate::material::{Advanced, Material, STATE_SIZE};
+use crate::material::{Advanced, Material, STATE_SIZE, SUMMED};
 use crate::step::CellSums;
 use crate::step::motion::{Motion, go_along, stays};
 use crate::step::shapes::Shapes;
@@ -60,8 +60,12 @@ for_each_simd! {
             return Done::Nothing;
         }
 
-        let (mut state, [volume]) = (states.all(start), volumes.all(start));
-        let mut volume = only(held, &volume);
+        let mut volume = only(held, &volumes.one(0, start));
+        // Those that are only added to need not be there before they change.
+        let mut state = [Lane::of(0.0); STATE_SIZE];
+        for k in SUMMED..STATE_SIZE {
+            state[k] = states.one(k, start);
+        }
         if let (false, Some(k)) = (OPEN, model.opening())
             && any(&*only(&volume, &state[k]))
         {
@@ -79,9 +83,16 @@ for_each_simd! {
         stresses.put::<S>(&stress, start, count);
         volumes.put::<S>(&[volume], start, count);
         if advanced.changed {
+            for k in 0..SUMMED {
+                let old = states.one(k, start);
+                for l in 0..LANES {
+                    state[k][l] += old[l];
+                }
+            }
             states.put::<S>(&state, start, count);
+            states.prefetch_some(0..SUMMED, start + AHEAD);
         }
-        states.prefetch(start + AHEAD);
+        states.prefetch_some(SUMMED..STATE_SIZE, start + AHEAD);
         volumes.prefetch(start + AHEAD);
 
         let (mut x, mut v) = (position.all(start), velocity.all(start));

@@ -5,7 +5,7 @@ use super::collect::Portions;
 use super::corners::Quad;
 use super::mass::ConsistentMass;
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, VoigtLanes, lane_of, prefetch_lines};
+use crate::lanes::{LANES, Lane, VoigtLanes, lane_of, prefetch_lines, prefetch_record};
 use crate::mesh::Mesh;
 use crate::parallel::fold;
 use std::ops::Range;
@@ -335,8 +335,15 @@ impl Cells {
             &mut [CellSums],
             Option<&mut [CellMedium]>,
         )| {
-            for (guest, &cell) in active.guest_cells().iter().enumerate() {
+            let cells = active.guest_cells();
+            for (guest, &cell) in cells.iter().enumerate() {
                 let ((tile, to), (from_tile, from)) = (lane_of(cell as usize), lane_of(guest));
+                if let Some(&later) = cells.get(guest + LANES) {
+                    let later = lane_of(later as usize).0;
+                    if tiles.contains(&later) {
+                        prefetch_record(sums, later - tiles.start);
+                    }
+                }
                 if !tiles.contains(&tile) {
                     continue;
                 }

@@ -14,9 +14,10 @@ use super::stress::Whose;
 use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference};
 use crate::Vec3;
 use crate::lanes::{
-    Contents, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, for_each_simd, get, prefetch_lines, set,
+    Contents, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, either, for_each_simd, get,
+    prefetch_lines, set,
 };
-use crate::material::STATE_SIZE;
+use crate::material::{Material, STATE_SIZE};
 use crate::plan::Plan;
 
 /// Slots that are added up at a time, their sums in registers.
@@ -182,6 +183,17 @@ for_each_simd! {
             sum.solid[l] += points.volume[l] * sums.shares[0][l];
             sum.closed[l] += points.volume[l] * sums.shares[1][l];
         }
+    }
+}
+
+for_each_simd! {
+    /// Says 1 of particles of this material that are not separated, else 0.
+    fn find_closed(closed: &mut Lane, model: &Material, stress: &VoigtLanes, state: &[Lane; STATE_SIZE]) {
+        let mut all = Lane::of(0.0);
+        for l in 0..LANES {
+            all[l] = either(model.is_separated(&get(stress, l), &get(state, l)), 0.0, 1.0);
+        }
+        *closed = all;
     }
 }
 
@@ -365,6 +377,16 @@ impl Sums {
             return;
         }
         self.closed = false;
+        if let (Some(model), Some(opening)) = (whose.model, whose.opening) {
+            let [shares, closed] = &mut self.shares;
+            *shares = Lane::of(1.0);
+            find_closed(asked.simd, closed, model, points.stress, points.state);
+            let open = points.state[opening][..bodies.len()].iter().enumerate();
+            for (l, _) in open.filter(|(_, opening)| **opening > 0.0) {
+                shares[l] = model.solid_share(&get(points.state, l));
+            }
+            return;
+        }
         for (l, &body) in bodies.iter().enumerate() {
             let (stress, state) = (get(points.stress, l), get(points.state, l));
             let model = model(body);

@@ -15,7 +15,7 @@ use crate::simulation::Simulation;
 use crate::step::Active;
 
 /// One particle in so many may be a guest, and one tile for so many of the others may be of guests.
-const FEW: usize = 12;
+const FEW: usize = 10;
 const FEW_TILES: usize = 4;
 
 /// The guests, in the order of their places behind the other particles.

@@ -3,7 +3,7 @@
 //! They are found anew wherever they are needed: their numbers would take longer to come from memory than the places of
 //! the nodes, which the cache holds, take to make them.
 
-use super::corners::{Quad, TileNodes, all_corners};
+use super::corners::{Instructions, Quad, TileNodes, all_corners};
 use crate::Vec3;
 use crate::lanes::{LANES, Lane, Simd, for_each_simd, get, set};
 use crate::mesh::{barycentric, tetrahedron_gradients};
@@ -30,23 +30,29 @@ impl Default for Shapes {
 
 for_each_simd! {
     fn find(shapes: &mut Shapes, nodes: TileNodes, places: &[Quad], sums: &mut Lane) {
-        let (places, all) = S::corners(nodes, places);
-        *sums = all;
-        for l in 0..LANES {
-            let corners = all_corners(&places, l);
-            let (gradients, volume) = tetrahedron_gradients(corners);
-            set(&mut shapes.origin, l, corners[0].to_array());
-            for (i, g) in gradients.iter().enumerate() {
-                for (k, g) in g.to_array().into_iter().enumerate() {
-                    shapes.gradients[3 * i + k][l] = g;
-                }
-            }
-            shapes.volume[l] = volume;
-        }
+        *sums = shapes.find::<S>(nodes, places);
     }
 }
 
 impl Shapes {
+    /// The same as [`Shapes::enter_and_sum`] in a kernel.
+    #[inline(always)]
+    pub(super) fn find<S: Instructions>(&mut self, nodes: TileNodes, places: &[Quad]) -> Lane {
+        let (places, sums) = S::corners(nodes, places);
+        for l in 0..LANES {
+            let corners = all_corners(&places, l);
+            let (gradients, volume) = tetrahedron_gradients(corners);
+            set(&mut self.origin, l, corners[0].to_array());
+            for (i, g) in gradients.iter().enumerate() {
+                for (k, g) in g.to_array().into_iter().enumerate() {
+                    self.gradients[3 * i + k][l] = g;
+                }
+            }
+            self.volume[l] = volume;
+        }
+        sums
+    }
+
     /// Goes to cells with these nodes; `places` are those of all nodes.
     #[inline]
     pub(super) fn enter(&mut self, simd: Simd, nodes: TileNodes, places: &[Quad]) {

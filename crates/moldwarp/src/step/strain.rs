@@ -163,15 +163,16 @@ for_each_simd! {
 
 /// Records of a tile that tell how much its cells weigh in the means of their nodes.
 struct Weighed<'a> {
-    shapes: &'a Shapes,
     sum: &'a CellSums,
     fill: &'a CellFill,
 }
 
 for_each_simd! {
     /// θ_e w_e and w_e.
-    fn weigh(tile: &Weighed, nodes: TileNodes, moved: &[Quad], weights: &mut [Lane; 2]) {
-        let Weighed { shapes, sum, fill } = tile;
+    fn weigh(tile: &Weighed, nodes: TileNodes, places: &[Quad], moved: &[Quad], weights: &mut [Lane; 2]) {
+        let Weighed { sum, fill } = tile;
+        let mut shapes = Shapes::default();
+        shapes.find::<S>(nodes, places);
         let (moved, _) = S::corners(nodes, moved);
         for l in 0..LANES {
             let gradient = gradient(&shapes.gradients(l), all_corners(&moved, l));
@@ -226,15 +227,14 @@ fn gradients(sim: &mut Simulation) {
         let (mut weights, mut works) = ([Lane::of(0.0); 2], [Lane::of(0.0); 2]);
         for tile in tiles {
             let nodes = active.tile_nodes(tile);
-            shapes.enter(simd, nodes, &shared.places);
             prefetch_record(sums, tile + RECORDS_AHEAD);
             let weighed = Weighed {
-                shapes: &shapes,
                 sum: &sums[tile],
                 fill: &fills[tile],
             };
-            weigh(simd, &weighed, nodes, &shared.moved, &mut weights);
+            weigh(simd, &weighed, nodes, &shared.places, &shared.moved, &mut weights);
             if let Some(force) = forces.get(tile) {
+                shapes.enter(simd, nodes, &shared.places);
                 load_nodes(simd, &mut moved, nodes, &shared.moved);
                 more_work(simd, &shapes, &moved, force, &mut works);
             }

@@ -103,7 +103,8 @@ for_each_simd! {
             let corners = all_corners(&moved, l);
             let gradient = gradient(&shapes.gradients(l), corners);
             let midpoint = midpoint(&gradient);
-            let volumetric = volumetric(&gradient);
+            // Up to round-off that of `volumetric`.
+            let volumetric = midpoint.x_axis.x + midpoint.y_axis.y + midpoint.z_axis.z;
             let smoothed = either(smooth, 0.25 * averaged[l], volumetric);
             let mut strain = tensor::strain(&midpoint);
             let change = (smoothed - volumetric) * (1.0 / 3.0);
@@ -232,7 +233,14 @@ fn gradients(sim: &mut Simulation) {
                 sum: &sums[tile],
                 fill: &fills[tile],
             };
-            weigh(simd, &weighed, nodes, &shared.places, &shared.moved, &mut weights);
+            weigh(
+                simd,
+                &weighed,
+                nodes,
+                &shared.places,
+                &shared.moved,
+                &mut weights,
+            );
             if let Some(force) = forces.get(tile) {
                 shapes.enter(simd, nodes, &shared.places);
                 load_nodes(simd, &mut moved, nodes, &shared.moved);

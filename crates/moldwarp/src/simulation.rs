@@ -266,6 +266,7 @@ impl Simulation {
         self.spare_drifts.extend(drifts);
         std::mem::swap(&mut self.active.keys, &mut self.spare_numbers);
         let mesh = &self.plan.mesh;
+        let away = (self.guests).begin_to_leave(&mut self.particles, &mut self.order.filed);
         self.order
             .find(&self.particles, mesh.tets.len(), &self.fields);
         let margin = self.may_have_guests();
@@ -275,8 +276,10 @@ impl Simulation {
             fields: &self.fields,
             margin,
         };
-        self.guests.clear();
         self.active.rebuild(&grid, &mut self.order);
+        let away = away.then(|| self.guests.places(self.particles.len()));
+        self.order.begin_to_move(away.into_iter().flatten());
+        self.guests.clear();
         let Simulation {
             plan,
             particles,

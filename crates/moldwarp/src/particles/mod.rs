@@ -132,11 +132,33 @@ impl Particles {
 
     /// Works on the numbers that a step changes, one array a component; two threads share them.
     pub(crate) fn for_working_columns(&mut self, work: impl Fn(&mut Column<f64>) + Sync) {
+        let (of_motion, of_material) = self.halves_mut();
+        rayon::join(|| of_motion.for_each(&work), || of_material.for_each(&work));
+    }
+
+    /// The numbers that a step changes, in two parts.
+    fn halves_mut(
+        &mut self,
+    ) -> (
+        impl Iterator<Item = &mut Column<f64>> + Send,
+        impl Iterator<Item = &mut Column<f64>> + Send,
+    ) {
         let of_motion = (self.position.columns_mut().iter_mut())
             .chain(self.velocity.columns_mut())
             .chain([&mut self.volume, &mut self.mass]);
         let of_material = (self.stress.columns_mut().iter_mut()).chain(self.state.columns_mut());
-        rayon::join(|| of_motion.for_each(&work), || of_material.for_each(&work));
+        (of_motion, of_material)
+    }
+
+    /// The numbers that a step changes, one array a component.
+    pub(crate) fn working_columns_mut(&mut self) -> impl Iterator<Item = &mut Column<f64>> {
+        let (of_motion, of_material) = self.halves_mut();
+        of_motion.chain(of_material)
+    }
+
+    /// The numbers that a step does not change.
+    pub(crate) fn other_columns_mut(&mut self) -> impl Iterator<Item = &mut Column<f64>> {
+        (self.origin.columns_mut().iter_mut()).chain([&mut self.initial_volume])
     }
 
     /// All numbers of particles, one array a component.

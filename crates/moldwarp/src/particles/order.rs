@@ -23,6 +23,8 @@ pub struct Order {
     pub destination: Vec<u32>,
     /// The reverse.
     source: Vec<u32>,
+    /// Where the working columns of each particle were.
+    working_source: Vec<u32>,
     numbers: Column<f64>,
     indices: Column<u32>,
     bodies: Column<u16>,
@@ -107,10 +109,22 @@ impl Order {
         self.destination[p as usize] = place;
     }
 
+    /// All particles have been given places. The working columns of those that are `away` are somewhere else: their
+    /// places and these.
+    pub(crate) fn begin_to_move(&mut self, away: impl Iterator<Item = (usize, usize)>) {
+        self.working_source.clone_from(&self.source);
+        for (home, place) in away {
+            self.working_source[self.destination[home] as usize] = place as u32;
+        }
+    }
+
     /// Moves all particles to the places that they have been given.
     pub(crate) fn settle(&mut self, particles: &mut Particles) {
+        for column in particles.working_columns_mut() {
+            permute(&self.working_source, column, &mut self.numbers);
+        }
         let from = &self.source;
-        for column in particles.columns_mut() {
+        for column in particles.other_columns_mut() {
             permute(from, column, &mut self.numbers);
         }
         permute(from, &mut particles.id, &mut self.indices);
@@ -131,7 +145,7 @@ fn permute<T: Copy + Default + Send + Sync>(
     spare: &mut Column<T>,
 ) {
     spare.reserve_exact(values.capacity().saturating_sub(spare.len()));
-    spare.resize(values.len(), T::default());
+    spare.resize(source.len(), T::default());
     fold((source, &mut spare[..]), BLOCK, &|(source, spare): (
         &[u32],
         &mut [T],

@@ -33,7 +33,6 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     let gone = crossing.gone.get().is_some();
     let crossed = check(sim, crossing)?;
     if gone || crossed && !(sim.may_have_guests() && sim.regroup()) {
-        sim.guests_leave();
         sim.reorder();
     }
     sim.profile.lap(Part::Order);

@@ -239,8 +239,19 @@ impl Guests {
     }
 
     fn leave(&mut self, particles: &mut Particles, filed: &mut Column<u32>) {
-        if !self.present {
+        if !self.begin_to_leave(particles, filed) {
             return;
+        }
+        let from = &self.from[..];
+        particles.for_working_columns(|column| put_back(column, from));
+        self.know_who_is_away(particles, filed);
+    }
+
+    /// Guests are at home but for their working columns: these are at the places of guests until particles are moved.
+    /// Returns whether there were any.
+    pub fn begin_to_leave(&mut self, particles: &mut Particles, filed: &mut Column<u32>) -> bool {
+        if !self.present {
+            return false;
         }
         self.present = false;
         let from = &self.from[..];
@@ -251,8 +262,20 @@ impl Guests {
         put_back(body, from);
         put_back(element, from);
         filed.truncate(element.len());
-        particles.for_working_columns(|column| put_back(column, from));
-        self.know_who_is_away(particles, filed);
+        true
+    }
+
+    /// Home and place of each guest, of so many particles; of several places of one the last one counts.
+    pub fn places(&self, particles: usize) -> impl Iterator<Item = (usize, usize)> {
+        let home = move |mut place: usize| {
+            while place >= particles {
+                place = self.from[place - particles] as usize;
+            }
+            place
+        };
+        let from = self.from.iter().map(|&p| p as usize);
+        from.zip(particles..)
+            .map(move |(p, place)| (home(p), place))
     }
 
     fn know_who_is_away(&mut self, particles: &Particles, filed: &[u32]) {

@@ -134,10 +134,7 @@ fn prefetch_line<T>(place: *const T, near: bool) {
 #[inline(always)]
 pub fn prefetch_record<T>(records: &[T], place: usize) {
     if let Some(record) = records.get(place) {
-        let first = std::ptr::from_ref(record).cast::<[f64; 8]>();
-        for line in 0..size_of::<T>() / 64 {
-            prefetch_line(first.wrapping_add(line), true);
-        }
+        prefetch_lines(record, 0, 0..size_of::<T>() / 64);
     }
 }
 

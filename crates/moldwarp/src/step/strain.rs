@@ -170,7 +170,13 @@ struct Weighed<'a> {
 
 for_each_simd! {
     /// θ_e w_e and w_e.
-    fn weigh(tile: &Weighed, nodes: TileNodes, places: &[Quad], moved: &[Quad], weights: &mut [Lane; 2]) {
+    fn weigh(
+        tile: &Weighed,
+        nodes: TileNodes,
+        places: &[Quad],
+        moved: &[Quad],
+        weights: &mut [Lane; 2],
+    ) {
         let Weighed { sum, fill } = tile;
         let mut shapes = Shapes::default();
         shapes.find::<S>(nodes, places);

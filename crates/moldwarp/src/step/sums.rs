@@ -188,7 +188,12 @@ for_each_simd! {
 
 for_each_simd! {
     /// Says 1 of particles of this material that are not separated, else 0.
-    fn find_closed(closed: &mut Lane, model: &Material, stress: &VoigtLanes, state: &[Lane; STATE_SIZE]) {
+    fn find_closed(
+        closed: &mut Lane,
+        model: &Material,
+        stress: &VoigtLanes,
+        state: &[Lane; STATE_SIZE],
+    ) {
         let mut all = Lane::of(0.0);
         for l in 0..LANES {
             all[l] = either(model.is_separated(&get(stress, l), &get(state, l)), 0.0, 1.0);

@@ -2,7 +2,6 @@
 
 use super::{LANES, Lane, NUMBERS_AHEAD, prefetch_number};
 use crate::parallel::Split;
-use std::cmp::Reverse;
 use std::ops::Range;
 
 /// How cells and particles lie in memory: tile after tile, of its cells one a lane, of its particles slot
@@ -57,22 +56,25 @@ pub struct Pile {
 fn alike_together(
     cells: impl Iterator<Item = (u32, u32)>,
 ) -> impl Iterator<Item = (usize, u32, u32)> {
-    let mut cells = cells
-        .enumerate()
-        .map(|(cell, (first, count))| (cell, first, count));
-    let (mut window, mut next, mut filled) = ([(0, 0, 0); WINDOW], 0, 0);
+    let mut cells = cells.enumerate();
+    let (mut window, mut next, mut filled) = ([(0, (0, 0)); WINDOW], 0, 0);
+    // Of each cell how few particles it has, and its place in the window: sorts faster than what has more to move.
+    let mut sorted = [0; WINDOW];
     std::iter::from_fn(move || {
         if next == filled {
             (next, filled) = (0, 0);
-            for (place, cell) in window.iter_mut().zip(&mut cells) {
-                *place = cell;
+            for ((own, key), cell) in window.iter_mut().zip(&mut sorted).zip(&mut cells) {
+                *own = cell;
+                let (_, (_, count)) = cell;
+                *key = u64::from(!count) << 32 | filled as u64;
                 filled += 1;
             }
-            window[..filled].sort_unstable_by_key(|&(cell, _, count)| (Reverse(count), cell));
+            sorted[..filled].sort_unstable();
         }
         (next < filled).then(|| {
             next += 1;
-            window[next - 1]
+            let (cell, (first, count)) = window[sorted[next - 1] as u32 as usize];
+            (cell, first, count)
         })
     })
 }

@@ -7,6 +7,12 @@ use crate::Vec3;
 /// round-off of a particle that slides along a wall.
 const TOLERANCE: f64 = 1e-10;
 
+/// Whether a point with these N_i in an element lies outside of it.
+#[inline]
+pub(crate) fn is_outside(n: [f64; 4]) -> bool {
+    n.iter().any(|&n| n < -TOLERANCE)
+}
+
 impl Mesh {
     /// Walks from element `start` to the one that holds `x`, always across the face behind which
     /// `x` lies farthest; `None` if the way leads out of the mesh.
@@ -62,9 +68,7 @@ impl Mesh {
 
     /// Whether `x` lies in element `e` (on its surface counts).
     pub fn contains(&self, e: u32, x: Vec3) -> bool {
-        self.barycentric(e as usize, x)
-            .iter()
-            .all(|&n| n >= -TOLERANCE)
+        !is_outside(self.barycentric(e as usize, x))
     }
 
     /// The first element that holds `x`, by looking at all of them.

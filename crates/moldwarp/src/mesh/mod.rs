@@ -18,6 +18,7 @@ mod walls;
 pub use cylinder::{CylinderError, CylinderSector, Split};
 pub use generate::box_mesh;
 pub use geometry::{barycentric, shortest_altitude, steepest_squared, tetrahedron_gradients};
+pub(crate) use locate::is_outside;
 pub use motion::{Driven, Follower, MotionError, Visit, Zones};
 pub use quality::Quality;
 pub use revolve::{PlaneMesh, Revolved};

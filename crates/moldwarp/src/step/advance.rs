@@ -4,19 +4,21 @@
 use super::motion::{Crossing, Motion, Search, look};
 use super::shapes::Shapes;
 use super::state::moved;
-use super::{TILES, guard, points};
+use super::{TILES, guard, leavers, points};
 use crate::Vec3;
 use crate::lanes::ByTile;
 use crate::measure::Part;
-use crate::parallel::fold;
+use crate::parallel::{Sum, fold};
 use crate::simulation::Simulation;
 use crate::stop::Stop;
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     let stays = !(sim.driven.moves() || sim.follower.moves());
-    let (crushed, mut crossing) = points::run(sim, stays);
+    let (crushed, crossing) = points::run(sim, stays);
+    let mut crossing = crossing.plus(locate_leavers(sim));
     crossing.outside = crossing.outside.map(|p| sim.guests.home(p, &sim.particles));
-    if crushed || !stays || !crossing.is_plain() {
+    let plain = crossing.is_plain();
+    if crushed || !stays || !plain {
         sim.guests_leave();
     }
     sim.profile.lap(Part::Points);
@@ -32,7 +34,7 @@ pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     }
     let gone = crossing.gone.get().is_some();
     let crossed = check(sim, crossing)?;
-    if gone || crossed && !(sim.may_have_guests() && sim.regroup()) {
+    if gone || crossed && !(plain && sim.may_have_guests() && sim.regroup()) {
         sim.reorder();
     }
     sim.profile.lap(Part::Order);
@@ -73,6 +75,27 @@ fn move_mesh(sim: &mut Simulation) -> Result<(), Stop> {
     }
 }
 
+/// Finds the elements of those that have left theirs and are to be guests.
+fn locate_leavers(sim: &mut Simulation) -> Crossing {
+    let Simulation {
+        plan,
+        particles,
+        fields,
+        contacts,
+        outflow,
+        guests,
+        ..
+    } = sim;
+    let search = Search {
+        mesh: &plan.mesh,
+        fields,
+        contacts,
+        outflow,
+        body: &particles.body,
+    };
+    leavers::locate(&mut guests.leavers, &search)
+}
+
 /// Finds each particle's element in a mesh that has moved.
 fn locate(sim: &mut Simulation) -> Crossing {
     let Simulation {
@@ -108,9 +131,16 @@ fn locate(sim: &mut Simulation) -> Crossing {
             shapes.enter(simd, nodes, places);
             for slot in tile.slots() {
                 look(simd, &mut motion, &shapes, &position, slot.start);
-                let own = &mut elements[slot.start - first..];
-                let n = |l, x| shapes.at(l, x);
-                motion.search(&search, slot, own, n, &mut crossing, |_| ());
+                for l in motion.who_left(slot.len()) {
+                    let (p, x) = (slot.start + l, motion.at(l));
+                    search.walk(
+                        p,
+                        shapes.at(l, x),
+                        x,
+                        &mut elements[p - first],
+                        &mut crossing,
+                    );
+                }
             }
         }
         crossing

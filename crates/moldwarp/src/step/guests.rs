@@ -13,10 +13,13 @@
 use crate::particles::{Column, Order, Particles};
 use crate::simulation::Simulation;
 use crate::step::Active;
+use crate::step::leavers::Leaver;
 
 /// One particle in so many may be a guest, and one tile for so many of the others may be of guests.
 const FEW: usize = 10;
 const FEW_TILES: usize = 4;
+/// One of so many guests that there may be may come in one step.
+const FEW_LEAVERS: usize = 4;
 
 /// The guests, in the order of their places behind the other particles.
 #[derive(Clone, Debug, Default)]
@@ -29,8 +32,12 @@ pub struct Guests {
     ends: Vec<u32>,
     /// Whether they are behind the others now.
     present: bool,
-    /// Element and place of those of a batch, for sorting.
-    found: Vec<(u32, u32)>,
+    /// Those that have left their elements in this drift, as they come.
+    pub leavers: Vec<Leaver>,
+    /// Element, place and number of those of a batch, for sorting.
+    found: Vec<(u32, u32, u32)>,
+    /// Numbers of those of the last batch, by their new places.
+    numbers: Vec<u32>,
     /// Cells that those of a batch are in, and their numbers.
     cells: Vec<(u32, u32)>,
     /// Element and home of guests that are at home, but not in the element under which they lie there.
@@ -114,7 +121,7 @@ impl Guests {
             }
             self.found.clear();
             let both = elements.iter().zip(from);
-            self.found.extend(both.map(|(&e, &p)| (e, p)));
+            self.found.extend(both.map(|(&e, &p)| (e, p, 0)));
             self.found.sort_unstable();
             if !self.lay_out(active, particles.len()) {
                 return false;
@@ -140,9 +147,13 @@ impl Guests {
         for numbers in [&mut self.from, &mut self.elements, &mut self.ends] {
             numbers.reserve(most);
         }
-        for pairs in [&mut self.found, &mut self.cells, &mut self.away] {
+        for pairs in [&mut self.cells, &mut self.away] {
             pairs.reserve(most + 1);
         }
+        self.found.reserve(most + 1);
+        let most_leavers = self.most_leavers(particles);
+        self.leavers.reserve_exact(most_leavers);
+        self.numbers.reserve(most_leavers);
         let Particles {
             id, body, element, ..
         } = particles;
@@ -159,25 +170,24 @@ impl Guests {
         own / FEW_TILES + particles / (4 * FEW) + 2
     }
 
-    /// Finds those that have crossed. False if there would be too many guests.
-    fn find(&mut self, particles: &Particles, filed: &[u32]) -> bool {
-        let most = ((particles.len() - self.twice()) / FEW).saturating_sub(self.from.len());
-        self.found.clear();
-        let (now, filed) = (particles.element.chunks(64), filed.chunks(64));
-        for ((now, filed), first) in now.zip(filed).zip((0..).step_by(64)) {
-            // Without leaving early, that it be done side by side.
-            if (now.iter().zip(filed)).fold(true, |same, (a, b)| same & (a == b)) {
-                continue;
-            }
-            let both = now.iter().zip(filed).zip(first..);
-            let crossed = both.filter(|((now, filed), _)| now != filed);
-            for ((&e, _), place) in crossed {
-                if self.found.len() == most {
-                    return false;
-                }
-                self.found.push((e, place));
-            }
+    /// Most that may leave their elements in a drift and be guests next, of these particles.
+    pub fn most_leavers(&self, particles: &Particles) -> usize {
+        8 + (particles.len() - self.twice()) / (FEW * FEW_LEAVERS)
+    }
+
+    /// Sorts out where those are that have left their elements. False if there would be too many guests.
+    fn find(&mut self, particles: &Particles) -> bool {
+        let own = particles.len() - self.twice();
+        // Some may not have been put down.
+        if self.from.len() + self.leavers.len() > own / FEW
+            || self.leavers.len() == self.most_leavers(particles)
+        {
+            return false;
         }
+        self.found.clear();
+        let leavers = self.leavers.iter().zip(0..);
+        let places = leavers.map(|(leaver, number)| (leaver.element, leaver.place, number));
+        self.found.extend(places);
         // By element, and in each in the order of their places.
         self.found.sort_unstable();
         true
@@ -191,6 +201,7 @@ impl Guests {
             elements,
             ends,
             found,
+            numbers,
             cells,
             ..
         } = self;
@@ -205,37 +216,49 @@ impl Guests {
         from.resize(count, 0);
         elements.resize(count, 0);
         ends.push(count as u32);
+        let first = from.len() - found.len();
+        numbers.clear();
+        numbers.resize(found.len(), 0);
         active.invite(cells, |rank, place| {
             let guest = place as usize - particles;
-            (elements[guest], from[guest]) = found[rank as usize];
+            (elements[guest], from[guest], numbers[guest - first]) = found[rank as usize];
         });
         true
     }
 
-    /// Those from the `first` one on, with which a batch begins, come.
-    fn arrive(&mut self, mut first: usize, particles: &mut Particles, filed: &mut Column<u32>) {
+    /// All come from their homes.
+    fn arrive(&mut self, particles: &mut Particles, filed: &mut Column<u32>) {
         self.present = true;
+        let mut first = 0;
         for &end in &self.ends {
             let batch = first..end as usize;
-            if batch.is_empty() {
-                continue;
-            }
             first = batch.end;
-            let from = &self.from[batch.clone()];
-            let Particles {
-                id, body, element, ..
-            } = particles;
-            copy(id, from);
-            copy(body, from);
-            copy(element, from);
-            filed.extend_from_slice(&self.elements[batch]);
+            let (from, elements) = (&self.from[batch.clone()], &self.elements[batch]);
             particles.for_working_columns(|column| copy(column, from));
+            settle_down(from, elements, particles, filed);
             for &p in from {
-                let p = p as usize;
-                (particles.mass[p], particles.volume[p]) = (0.0, 0.0);
-                particles.element[p] = filed[p];
+                particles.element[p as usize] = filed[p as usize];
             }
         }
+    }
+
+    /// The last batch comes, of those that have just left their elements.
+    fn come(&mut self, particles: &mut Particles, filed: &mut Column<u32>) {
+        self.present = true;
+        let Guests {
+            from,
+            elements,
+            leavers,
+            numbers,
+            ..
+        } = self;
+        let batch = from.len() - numbers.len()..from.len();
+        for (k, column) in particles.working_columns_mut().enumerate() {
+            let new = numbers.iter().map(|&n| leavers[n as usize].numbers[k]);
+            new.for_each(|number| column.push(number));
+        }
+        settle_down(&from[batch.clone()], &elements[batch], particles, filed);
+        leavers.clear();
     }
 
     fn leave(&mut self, particles: &mut Particles, filed: &mut Column<u32>) {
@@ -250,6 +273,9 @@ impl Guests {
     /// Guests are at home but for their working columns: these are at the places of guests until particles are moved.
     /// Returns whether there were any.
     pub fn begin_to_leave(&mut self, particles: &mut Particles, filed: &mut Column<u32>) -> bool {
+        for leaver in self.leavers.drain(..) {
+            particles.element[leaver.place as usize] = leaver.element;
+        }
         if !self.present {
             return false;
         }
@@ -295,6 +321,18 @@ pub(crate) fn homes(from: &[u32], particles: usize) -> impl Iterator<Item = usiz
     all.filter(move |&p| p < particles)
 }
 
+/// Those that have come from these places with the numbers that a step changes are there in these elements, and not where
+/// they have come from.
+fn settle_down(from: &[u32], elements: &[u32], particles: &mut Particles, filed: &mut Column<u32>) {
+    copy(&mut particles.id, from);
+    copy(&mut particles.body, from);
+    particles.element.extend_from_slice(elements);
+    filed.extend_from_slice(elements);
+    for &p in from {
+        (particles.mass[p as usize], particles.volume[p as usize]) = (0.0, 0.0);
+    }
+}
+
 fn copy<T: Copy + Default>(values: &mut Column<T>, from: &[u32]) {
     let first = values.len();
     values.resize(first + from.len(), T::default());
@@ -321,7 +359,7 @@ impl Simulation {
     /// Guests come, if they are not there.
     pub(super) fn guests_arrive(&mut self) {
         if !self.guests.present && !self.guests.from.is_empty() {
-            (self.guests).arrive(0, &mut self.particles, &mut self.order.filed);
+            (self.guests).arrive(&mut self.particles, &mut self.order.filed);
         }
     }
 
@@ -359,14 +397,14 @@ impl Simulation {
             guests,
             ..
         } = self;
-        let (first, tiles, own) = (guests.from.len(), active.tiles.len(), active.own_tiles());
-        if tiles - own > own / FEW_TILES || !guests.find(particles, &order.filed) {
+        let (tiles, own) = (active.tiles.len(), active.own_tiles());
+        if tiles - own > own / FEW_TILES || !guests.find(particles) {
             return false;
         }
         if !guests.lay_out(active, particles.len() - guests.twice()) {
             return false;
         }
-        guests.arrive(first, particles, &mut order.filed);
+        guests.come(particles, &mut order.filed);
         cells.add_guests(active, tiles);
         true
     }

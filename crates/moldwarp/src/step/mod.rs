@@ -32,6 +32,7 @@ mod corners;
 mod correction;
 mod guard;
 mod guests;
+mod leavers;
 mod mass;
 mod motion;
 mod nodes;

@@ -13,7 +13,6 @@ use crate::lanes::{
 };
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::{First, Sum};
-use std::ops::Range;
 
 /// Cells and particles side by side.
 pub(super) struct Motion {
@@ -137,30 +136,17 @@ impl Motion {
         self.some_left = any(&*self.left);
     }
 
-    /// Finds the elements of the particles of a slot that have left theirs; `n` are their N_i there. Those that have come
-    /// to another one are not here any more, and `gone` is told their lanes.
+    /// Lanes, of the first so many, whose particles have left their elements.
     #[inline]
-    pub fn search(
-        &mut self,
-        search: &Search,
-        slot: Range<usize>,
-        elements: &mut [u32],
-        n: impl Fn(usize, Vec3) -> [f64; 4],
-        crossing: &mut Crossing,
-        mut gone: impl FnMut(usize),
-    ) {
-        if !self.some_left {
-            return;
-        }
-        for (l, p) in slot.enumerate() {
-            if self.left[l] == 0.0 {
-                continue;
-            }
-            let x = Vec3::from_array(get(&self.position, l));
-            if search.walk(p, n(l, x), x, &mut elements[l], crossing) {
-                gone(l);
-            }
-        }
+    pub fn who_left(&self, lanes: usize) -> impl Iterator<Item = usize> {
+        let lanes = if self.some_left { lanes } else { 0 };
+        (0..lanes).filter(|&l| self.left[l] != 0.0)
+    }
+
+    /// Where a particle is, m.
+    #[inline]
+    pub fn at(&self, l: usize) -> Vec3 {
+        Vec3::from_array(get(&self.position, l))
     }
 
     /// Work of gravity on all particles, J.
@@ -219,7 +205,7 @@ impl Search<'_> {
     }
 
     /// Walks particle `p` to its element from the one where it was, which has these N_i at `x`. False if it still is there.
-    fn walk(
+    pub fn walk(
         &self,
         p: usize,
         n: [f64; 4],

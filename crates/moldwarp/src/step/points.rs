@@ -6,6 +6,7 @@
 
 mod usual;
 
+use super::leavers::{Gathering, Leaver};
 use super::motion::{Crossing, Motion, Search};
 use super::shapes::Shapes;
 use super::state::Summed;
@@ -18,14 +19,19 @@ use crate::lanes::{
     self, AHEAD, ByTile, Columns, Held, LANES, Lane, for_each_simd, get, held, only, prefetch,
     prefetch_bodies, set,
 };
+use crate::mesh::is_outside;
 use crate::parallel::Smallest;
-use crate::particles::Particles;
+use crate::particles::{Particles, WORKING};
 use crate::simulation::Simulation;
 use usual::Done;
 
 /// New velocities, stresses, volumes and positions of all particles. Returns whether one has lost all its volume, and what has
 /// crossed faces, unless the mesh is still to move.
 pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
+    let most_leavers = match sim.may_have_guests() {
+        true => sim.guests.most_leavers(&sim.particles),
+        false => 0,
+    };
     let Simulation {
         plan,
         particles,
@@ -42,6 +48,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         answers,
         pending,
         kinetic,
+        guests,
         simd,
         ..
     } = sim;
@@ -77,6 +84,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         reference: reference.as_ref(),
         simd,
     };
+    let leavers = Gathering::new(&mut guests.leavers, most_leavers);
     let stressed = (
         Columns::new(stress.components_mut()),
         Columns::new(state.components_mut()),
@@ -212,14 +220,23 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     continue;
                 }
                 // What has come to another element counts there, as a guest.
-                let elements = &mut elements[start..];
                 let Carried {
                     mass, shapes: n, ..
                 } = sums.next();
-                let (n, volume) = (|l, _| get(n, l), &mut stress.points.volume);
-                motion.search(&search, slot, elements, n, &mut crossing, |l| {
-                    (mass[l], volume[l]) = (0.0, 0.0);
-                });
+                for l in motion.who_left(lanes) {
+                    let (p, x, n) = (slot.start + l, motion.at(l), get(n, l));
+                    let element = &mut elements[start + l];
+                    let leaver = || Leaver {
+                        place: p as u32,
+                        element: *element,
+                        shapes: n,
+                        numbers: arrays.working(start + l, mass[l]),
+                    };
+                    let gone = is_outside(n) && leavers.put(leaver);
+                    if gone || search.walk(p, n, x, element, &mut crossing) {
+                        (mass[l], stress.points.volume[l]) = (0.0, 0.0);
+                    }
+                }
                 let points = Counted {
                     position: &motion.position,
                     volume: &stress.points.volume,
@@ -272,6 +289,20 @@ struct Own<'a> {
     stressed: Stressed<'a>,
     position: Columns<'a, 3>,
     velocity: Columns<'a, 3>,
+}
+
+impl Own<'_> {
+    /// All numbers of a particle of this mass, in the order of the working columns.
+    fn working(&self, place: usize, mass: f64) -> [f64; WORKING] {
+        let (stress, state, volume) = &self.stressed;
+        let [x, v] = [&self.position, &self.velocity].map(|vectors| vectors.at(place));
+        let scalars = [volume.at(place)[0], mass];
+        let (stress, state) = (stress.at(place), state.at(place));
+        let mut all = (x.into_iter().chain(v).chain(scalars))
+            .chain(stress)
+            .chain(state);
+        std::array::from_fn(|_| all.next().expect("as many as there are"))
+    }
 }
 
 /// The cells of a tile.

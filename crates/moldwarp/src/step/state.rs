@@ -325,8 +325,10 @@ impl Cells {
         let medium = (!self.medium.is_empty()).then(|| self.medium.split_at_mut(own));
         let (medium, guests_medium) = medium.unzip();
         let (given, given_medium) = (&*guests, guests_medium.as_deref());
-        // Each thread looks through all guests for those in its cells: so these are added in their order.
-        fold((0..own, sums, medium), own.div_ceil(8), &|(
+        // Each thread looks through all guests for those in its cells: so these are added in their order, with any number of
+        // threads.
+        let block = own.div_ceil(rayon::current_num_threads());
+        fold((0..own, sums, medium), block, &|(
             tiles,
             sums,
             mut medium,

@@ -80,6 +80,7 @@ fn locate_leavers(sim: &mut Simulation) -> Crossing {
     let Simulation {
         plan,
         particles,
+        active,
         fields,
         contacts,
         outflow,
@@ -93,7 +94,7 @@ fn locate_leavers(sim: &mut Simulation) -> Crossing {
         outflow,
         body: &particles.body,
     };
-    leavers::locate(&mut guests.leavers, &search)
+    leavers::locate(&mut guests.leavers, active, &search)
 }
 
 /// Finds each particle's element in a mesh that has moved.

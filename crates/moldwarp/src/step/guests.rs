@@ -18,7 +18,7 @@ use crate::step::leavers::Leaver;
 /// One particle in so many may be a guest, and one tile for so many of the others may be of guests.
 const FEW: usize = 10;
 const FEW_TILES: usize = 4;
-/// One of so many guests that there may be may come in one step.
+/// There is room for one of so many guests to come in one step.
 const FEW_LEAVERS: usize = 4;
 
 /// The guests, in the order of their places behind the other particles.
@@ -151,9 +151,8 @@ impl Guests {
             pairs.reserve(most + 1);
         }
         self.found.reserve(most + 1);
-        let most_leavers = self.most_leavers(particles);
-        self.leavers.reserve_exact(most_leavers);
-        self.numbers.reserve(most_leavers);
+        self.numbers.reserve(most + 1);
+        self.leavers.reserve_exact(most / FEW_LEAVERS);
         let Particles {
             id, body, element, ..
         } = particles;
@@ -170,18 +169,10 @@ impl Guests {
         own / FEW_TILES + particles / (4 * FEW) + 2
     }
 
-    /// Most that may leave their elements in a drift and be guests next, of these particles.
-    pub fn most_leavers(&self, particles: &Particles) -> usize {
-        8 + (particles.len() - self.twice()) / (FEW * FEW_LEAVERS)
-    }
-
     /// Sorts out where those are that have left their elements. False if there would be too many guests.
     fn find(&mut self, particles: &Particles) -> bool {
         let own = particles.len() - self.twice();
-        // Some may not have been put down.
-        if self.from.len() + self.leavers.len() > own / FEW
-            || self.leavers.len() == self.most_leavers(particles)
-        {
+        if self.from.len() + self.leavers.len() > own / FEW {
             return false;
         }
         self.found.clear();

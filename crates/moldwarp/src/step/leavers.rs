@@ -4,6 +4,7 @@
 //! memory, takes longer than to move a particle. What elements they have come to is found after the pass, of many of them
 //! side by side: each waits for the mesh's memory.
 
+use super::Active;
 use super::motion::{Crossing, Search};
 use crate::Vec3;
 use crate::lanes::prefetch_number;
@@ -14,12 +15,16 @@ use std::sync::Mutex;
 
 /// Leavers that one thread walks to their elements at a time.
 const TOGETHER: usize = 32;
+/// Leavers that a thread keeps to itself: to share each would take as long as to put it down.
+const HANDFUL: usize = 16;
 
 /// A particle that leaves its element.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Leaver {
-    /// Its place, and the element that it leaves or, when that has been found, is in.
     pub place: u32,
+    /// The cell whose element it leaves.
+    pub cell: u32,
+    /// The element that it has come to, when that has been found.
     pub element: u32,
     /// Its N_i in the element that it leaves.
     pub shapes: [f64; 4],
@@ -29,10 +34,7 @@ pub struct Leaver {
 
 impl Leaver {
     fn position(&self) -> Vec3 {
-        let [x, y, z] = *self
-            .numbers
-            .first_chunk()
-            .expect("begins with the position");
+        let [x, y, z] = *self.numbers.first_chunk().expect("begins with the position");
         Vec3::new(x, y, z)
     }
 
@@ -43,35 +45,54 @@ impl Leaver {
     }
 }
 
-/// Where threads put down leavers, up to so many.
-pub struct Gathering<'a> {
-    leavers: Mutex<&'a mut Vec<Leaver>>,
-    most: usize,
+/// Leavers that one thread has put down, before they come to those of all threads.
+pub struct Handful<'a> {
+    all: &'a Mutex<&'a mut Vec<Leaver>>,
+    some: [Leaver; HANDFUL],
+    count: usize,
 }
 
-impl<'a> Gathering<'a> {
-    pub fn new(leavers: &'a mut Vec<Leaver>, most: usize) -> Gathering<'a> {
-        leavers.clear();
-        let leavers = Mutex::new(leavers);
-        Gathering { leavers, most }
+impl<'a> Handful<'a> {
+    pub fn new(all: &'a Mutex<&'a mut Vec<Leaver>>) -> Handful<'a> {
+        Handful {
+            all,
+            some: [Leaver::default(); HANDFUL],
+            count: 0,
+        }
     }
 
-    /// False if there are so many already.
-    pub fn put(&self, leaver: impl FnOnce() -> Leaver) -> bool {
-        let mut leavers = self.leavers.lock().expect("no other thread panicked");
-        let few = leavers.len() < self.most;
-        if few {
-            leavers.push(leaver());
+    pub fn put(&mut self, leaver: Leaver) {
+        self.some[self.count] = leaver;
+        self.count += 1;
+        if self.count == HANDFUL {
+            self.hand_over();
         }
-        few
+    }
+
+    fn hand_over(&mut self) {
+        let mut all = self.all.lock().expect("no other thread panicked");
+        all.extend_from_slice(&self.some[..self.count]);
+        self.count = 0;
+    }
+}
+
+impl Drop for Handful<'_> {
+    fn drop(&mut self) {
+        if self.count > 0 {
+            self.hand_over();
+        }
     }
 }
 
 /// Finds the elements that leavers have come to.
-pub(super) fn locate(leavers: &mut [Leaver], search: &Search) -> Crossing {
+pub(super) fn locate(leavers: &mut [Leaver], active: &Active, search: &Search) -> Crossing {
     let mesh = search.mesh;
     fold(leavers, TOGETHER, &|leavers: &mut [Leaver]| {
         for leaver in &*leavers {
+            prefetch_number(&active.elements, leaver.cell as usize);
+        }
+        for leaver in &mut *leavers {
+            leaver.element = active.elements[leaver.cell as usize];
             prefetch_number(&mesh.neighbours, leaver.element as usize);
             prefetch_number(search.body, leaver.place as usize);
         }

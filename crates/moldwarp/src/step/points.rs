@@ -6,7 +6,7 @@
 
 mod usual;
 
-use super::leavers::{Gathering, Leaver};
+use super::leavers::{Handful, Leaver};
 use super::motion::{Crossing, Motion, Search};
 use super::shapes::Shapes;
 use super::state::Summed;
@@ -23,15 +23,13 @@ use crate::mesh::is_outside;
 use crate::parallel::Smallest;
 use crate::particles::{Particles, WORKING};
 use crate::simulation::Simulation;
+use std::sync::Mutex;
 use usual::Done;
 
 /// New velocities, stresses, volumes and positions of all particles. Returns whether one has lost all its volume, and what has
 /// crossed faces, unless the mesh is still to move.
 pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
-    let most_leavers = match sim.may_have_guests() {
-        true => sim.guests.most_leavers(&sim.particles),
-        false => 0,
-    };
+    let may_have_guests = sim.may_have_guests();
     let Simulation {
         plan,
         particles,
@@ -84,7 +82,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         reference: reference.as_ref(),
         simd,
     };
-    let leavers = Gathering::new(&mut guests.leavers, most_leavers);
+    let leavers = Mutex::new(&mut guests.leavers);
     let stressed = (
         Columns::new(stress.components_mut()),
         Columns::new(state.components_mut()),
@@ -112,7 +110,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
         let (mut shapes, mut sums) = (Shapes::default(), Sums::default());
         let mut giving = (to_nodes.begin(), to_pairs.begin());
-        let mut kick = Kick::default();
+        let (mut kick, mut leaving) = (Kick::default(), Handful::new(&leavers));
         let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
         // Work of the particles' stresses in the halves of the drift.
         let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
@@ -225,17 +223,23 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 } = sums.next();
                 for l in motion.who_left(lanes) {
                     let (p, x, n) = (slot.start + l, motion.at(l), get(n, l));
-                    let element = &mut elements[start + l];
-                    let leaver = || Leaver {
-                        place: p as u32,
-                        element: *element,
-                        shapes: n,
-                        numbers: arrays.working(start + l, mass[l]),
+                    let gone = match may_have_guests {
+                        true => is_outside(n),
+                        false => search.walk(p, n, x, &mut elements[start + l], &mut crossing),
                     };
-                    let gone = is_outside(n) && leavers.put(leaver);
-                    if gone || search.walk(p, n, x, element, &mut crossing) {
-                        (mass[l], stress.points.volume[l]) = (0.0, 0.0);
+                    if !gone {
+                        continue;
                     }
+                    if may_have_guests {
+                        leaving.put(Leaver {
+                            place: p as u32,
+                            cell: (number * LANES + l) as u32,
+                            shapes: n,
+                            numbers: arrays.working(start + l, mass[l]),
+                            ..Leaver::default()
+                        });
+                    }
+                    (mass[l], stress.points.volume[l]) = (0.0, 0.0);
                 }
                 let points = Counted {
                     position: &motion.position,

@@ -8,9 +8,11 @@
 //! operation for operation, and sums over lanes are made in the lanes' order, so that results have the same
 //! bits with any instruction set.
 
+mod exp;
 mod simd;
 mod tiles;
 
+pub use exp::exp;
 pub use simd::Simd;
 pub(crate) use simd::for_each_simd;
 pub use tiles::{ByTile, Contents, Pile, Tiles};

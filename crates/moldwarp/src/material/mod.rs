@@ -183,7 +183,7 @@ impl Material {
     }
 
     /// Share of a particle's volume that is soil: the rest has opened in tension and holds none.
-    #[inline]
+    #[inline(always)]
     pub fn solid_share(&self, state: &State) -> f64 {
         match self {
             Material::LinearElastic(_) | Material::Rigid | Material::External(_) => 1.0,

@@ -34,7 +34,10 @@ pub struct Leaver {
 
 impl Leaver {
     fn position(&self) -> Vec3 {
-        let [x, y, z] = *self.numbers.first_chunk().expect("begins with the position");
+        let [x, y, z] = *self
+            .numbers
+            .first_chunk()
+            .expect("begins with the position");
         Vec3::new(x, y, z)
     }
 

@@ -187,18 +187,22 @@ for_each_simd! {
 }
 
 for_each_simd! {
-    /// Says 1 of particles of this material that are not separated, else 0.
+    /// Shares of particles of this material that have not opened; and 1 if they are not separated, else 0.
     fn find_closed(
+        solid: &mut Lane,
         closed: &mut Lane,
         model: &Material,
         stress: &VoigtLanes,
         state: &[Lane; STATE_SIZE],
     ) {
-        let mut all = Lane::of(0.0);
+        let (mut shares, mut all) = (Lane::of(0.0), Lane::of(0.0));
+        for l in 0..LANES {
+            shares[l] = model.solid_share(&get(state, l));
+        }
         for l in 0..LANES {
             all[l] = either(model.is_separated(&get(stress, l), &get(state, l)), 0.0, 1.0);
         }
-        *closed = all;
+        (*solid, *closed) = (shares, all);
     }
 }
 
@@ -382,14 +386,16 @@ impl Sums {
             return;
         }
         self.closed = false;
-        if let (Some(model), Some(opening)) = (whose.model, whose.opening) {
-            let [shares, closed] = &mut self.shares;
-            *shares = Lane::of(1.0);
-            find_closed(asked.simd, closed, model, points.stress, points.state);
-            let open = points.state[opening][..bodies.len()].iter().enumerate();
-            for (l, _) in open.filter(|(_, opening)| **opening > 0.0) {
-                shares[l] = model.solid_share(&get(points.state, l));
-            }
+        if let Some(model) = whose.model {
+            let [solid, closed] = &mut self.shares;
+            find_closed(
+                asked.simd,
+                solid,
+                closed,
+                model,
+                points.stress,
+                points.state,
+            );
             return;
         }
         for (l, &body) in bodies.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use super::super::{State, StateField, Update};
 use super::{MohrCoulomb, MohrCoulombState, YieldState};
+use crate::lanes::{either, exp};
 use crate::tensor::Voigt;
 
 /// In the order of a particle's [`State`]; `yielding` is the number of a [`YieldState`].
@@ -28,13 +29,10 @@ pub(in super::super) const STATE_FIELDS: [StateField; 4] = [
 pub(in super::super) const OPENING: usize = 2;
 
 /// Volume without opening over volume: the opening w is a logarithmic strain.
-#[inline]
+#[inline(always)]
 pub(in super::super) fn solid_share(state: &State) -> f64 {
-    if state[OPENING] > 0.0 {
-        libm::exp(-state[OPENING])
-    } else {
-        1.0
-    }
+    let opening = state[OPENING];
+    either(opening > 0.0, exp(-opening), 1.0)
 }
 
 /// Opened, and not compressed again.

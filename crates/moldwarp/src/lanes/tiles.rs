@@ -254,6 +254,11 @@ pub struct Contents<'a> {
 }
 
 impl<'a> Contents<'a> {
+    /// Whether it has no particles.
+    pub fn is_empty(self) -> bool {
+        self.slots.len() == 1
+    }
+
     /// Places of the particles in each slot, one a lane.
     pub fn slots(self) -> impl Iterator<Item = Range<usize>> + 'a {
         (self.slots.windows(2)).map(|w| w[0] as usize..w[1] as usize)

@@ -20,7 +20,7 @@ use crate::particles::Column;
 use std::ops::{AddAssign, Range};
 
 /// Portions that cells are cut into, unless they would have fewer tiles than [`LEAST`].
-const PORTIONS: usize = 32;
+const PORTIONS: usize = 24;
 const LEAST: usize = 32;
 /// Most quads that a node collects at a time.
 const MOST: usize = 2;

@@ -16,7 +16,7 @@ use super::sums::{self, Arrays as SumArrays, Asked, Carried, Counted, Given as S
 use super::to_particles::{Given, Kick, Pending};
 use crate::Vec3;
 use crate::lanes::{
-    self, AHEAD, ByTile, Columns, Held, LANES, Lane, for_each_simd, get, held, only, prefetch,
+    self, AHEAD, ByTile, Columns, Held, LANES, Lane, any, for_each_simd, get, held, only, prefetch,
     prefetch_bodies, set,
 };
 use crate::mesh::is_outside;
@@ -115,6 +115,10 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         // Work of the particles' stresses in the halves of the drift.
         let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
         for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
+            if tile.is_empty() && !any(&*records.sum.volume) {
+                // Nor has it had guests: its records stay as they are, of nothing.
+                continue;
+            }
             let nodes = active.tile_nodes(number);
             shapes.enter(simd, nodes, &shared.places);
             deformation.enter(simd, &shapes, nodes, shared, smoothing);

@@ -5,7 +5,7 @@ use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nod
 use super::shapes::Shapes;
 use super::{CellFill, CellForce, CellSums, Cells, Shared, smoothing};
 use crate::lanes::{
-    self, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, either, for_each_simd, get,
+    self, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, any, either, for_each_simd, get,
     prefetch_record, set,
 };
 use crate::plan::Smoothing;
@@ -235,10 +235,11 @@ fn gradients(sim: &mut Simulation) {
         for tile in tiles {
             let nodes = active.tile_nodes(tile);
             prefetch_record(sums, tile + RECORDS_AHEAD);
-            let weighed = Weighed {
-                sum: &sums[tile],
-                fill: &fills[tile],
-            };
+            let (sum, fill) = (&sums[tile], &fills[tile]);
+            if !any(&*sum.volume) && !any(&*fill.filled) {
+                continue;
+            }
+            let weighed = Weighed { sum, fill };
             weigh(
                 simd,
                 &weighed,

@@ -7,8 +7,8 @@ use super::time_step::{Limits, Steps};
 use super::{Active, BLOCK, CellFill, CellForce, CellMedium, CellSums, Cells, Node};
 use super::{smoothing, strain, sums};
 use crate::lanes::{
-    self, LANES, Lane, NUMBERS_AHEAD, RECORDS_AHEAD, Simd, either, for_each_simd, get, lane_of,
-    prefetch_number, prefetch_record, set,
+    self, LANES, Lane, NUMBERS_AHEAD, RECORDS_AHEAD, Simd, any, either, for_each_simd, get,
+    lane_of, prefetch_number, prefetch_record, set,
 };
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
@@ -166,13 +166,17 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
             let mut forces = forces.map(|forces| forces.iter_mut());
             for (tile, fill) in range.zip(fills) {
                 let nodes = active.tile_nodes(tile);
-                let kept = forces.as_mut().and_then(|forces| forces.next());
-                let force = kept.unwrap_or(&mut passing);
+                let own = forces.as_mut().and_then(|forces| forces.next());
+                let kept = own.is_some();
+                let force = own.unwrap_or(&mut passing);
                 shapes.enter_and_sum(simd, &mut densities, nodes, &shared.places);
                 let sum = &sums[tile];
                 prefetch_record(sums, tile + RECORDS_AHEAD);
                 let is_cell = &active.is_cell.as_chunks().0[tile];
                 find_filled(simd, &densities, is_cell, mixed, fill);
+                if !kept && !any(&*sum.volume) && !any(&*fill.filled) {
+                    continue;
+                }
                 let mut empty = false;
                 stand_in(simd, &shapes, sum, fill, force, &mut empty);
                 steps.add(simd, &limits, &shapes, sum, medium.get(tile), fill);

@@ -117,10 +117,13 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
         let (mut moved, mut work) = (NO_CORNERS, Lane::of(0.0));
         let mut shapes = Shapes::default();
         for ((number, tile), mut records) in tiles.zip(each(arrays)) {
+            sums.enter(&mut records);
+            if tile.is_empty() {
+                continue;
+            }
             let nodes = active.tile_nodes(number);
             let pairs = mass.tile_pairs(number);
             shapes.enter(asked.simd, nodes, &shared.places);
-            sums.enter(&mut records);
             for slot in tile.slots() {
                 fetch(
                     asked.simd,

@@ -96,6 +96,7 @@ impl crate::saved::Saved for Cells {
             // Made anew.
             summed: _,
             worked: _,
+            stirred: _,
         } = self;
         sums.save(out);
         medium.save(out);

@@ -95,9 +95,10 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     let arrays: Arrays = (stressed, vectors, &mut element[..]);
     let smoothing = plan.numerics.smoothing;
     let differs = sums::differs(elasticity, asked.reference);
+    let mut stirred = std::mem::take(&mut cells.stirred);
     let (records, sharing, pairs, cut) = sums::arrays(cells, differs);
-    let all = ByTile::new(&active.tiles, arrays, (records, sharing));
-    let work = |block: ByTile<Arrays, (SumArrays, Sharing)>| {
+    let all = ByTile::new(&active.tiles, arrays, (records, &mut stirred[..], sharing));
+    let work = |block: ByTile<Arrays, (SumArrays, &mut [bool], Sharing)>| {
         let first = block.first();
         let tiles = block.each();
         let (stressed, (position, velocity), elements) = block.particles;
@@ -106,7 +107,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             position,
             velocity,
         };
-        let (records, (to_nodes, to_pairs)) = block.cells;
+        let (records, stirred, (to_nodes, to_pairs)) = block.cells;
         let (mut stress, mut motion) = (Stresses::new(plan, answers, simd), Motion::default());
         let (mut shapes, mut sums) = (Shapes::default(), Sums::default());
         let mut giving = (to_nodes.begin(), to_pairs.begin());
@@ -114,7 +115,8 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
         let (mut deformation, mut crossing) = (Deformation::default(), Crossing::default());
         // Work of the particles' stresses in the halves of the drift.
         let (mut begun, mut ended) = (Lane::of(0.0), Lane::of(0.0));
-        for ((number, tile), mut records) in tiles.zip(sums::each(records)) {
+        let records = sums::each(records).zip(stirred);
+        for ((number, tile), (mut records, stirred)) in tiles.zip(records) {
             if tile.is_empty() && !any(&*records.sum.volume) {
                 // Nor has it had guests: its records stay as they are, of nothing.
                 continue;
@@ -128,6 +130,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
             if stays {
                 sums.enter(&mut records);
             }
+            let is_still = !std::mem::take(stirred);
             let cells = Cells {
                 shapes: &shapes,
                 deformation: &deformation,
@@ -150,6 +153,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                             &mass[slot.start..],
                             (start, lanes),
                             held(lanes),
+                            is_still,
                             model,
                             &shapes,
                             &deformation,
@@ -159,6 +163,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                             &mut stress.points,
                             &mut motion,
                             &mut stress.booked,
+                            stirred,
                             sums.next(),
                             plain.then_some(&mut *records.sum),
                         )
@@ -175,6 +180,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                     continue;
                 }
                 if done == Done::Nothing {
+                    *stirred = true;
                     begin(
                         simd,
                         &mut motion,
@@ -269,6 +275,7 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
     ledger.particle_stress_work(works);
     ledger.gravity_work(sums[0]);
     *kinetic = Some(sums[1]);
+    cells.stirred = stirred;
     ledger.grid_stress_work(sums[2]);
     cells.worked = sums[3];
     cells.summed = if stays { Summed::All } else { Summed::Nothing };

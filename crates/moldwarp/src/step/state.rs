@@ -162,6 +162,9 @@ pub struct Cells {
     pub summed: Summed,
     /// Half the work of the particles' stresses in the last drift as far as sums are made, J.
     pub worked: f64,
+    /// Of each tile whether any of its particles may have state variables other than zero that are not only added to: those
+    /// of the others need not be read.
+    pub stirred: Vec<bool>,
 }
 
 /// Cells that have their sums.
@@ -274,6 +277,8 @@ impl Cells {
         let room = active.tiles.len() + guests;
         room_for(&mut self.sums, room);
         room_for(&mut self.fills, room);
+        room_for(&mut self.stirred, room);
+        self.stirred.clear();
         self.resize(active);
         self.mass.renew(&active.cell_nodes, active.nodes.len());
         (self.portions).renew(&active.cell_nodes, &self.mass, guests > 0);
@@ -284,6 +289,7 @@ impl Cells {
         let tiles = active.tiles.len();
         self.sums.resize_with(tiles, CellSums::default);
         self.fills.resize_with(tiles, CellFill::default);
+        self.stirred.resize(tiles, true);
         self.keep_medium(!self.medium.is_empty());
         self.keep_forces(!self.forces.is_empty());
     }

@@ -34,12 +34,14 @@ pub(super) enum Done {
 
 for_each_simd! {
     /// Advances a slot, given by where it starts and how many particles it has, and adds to `sum`, if there is one. If not
-    /// `OPEN`, nothing in it has opened.
+    /// `OPEN`, nothing in it has opened; if it is still, its state variables that are not only added to are zero, and it stays
+    /// so unless it is said to be stirred.
     pub(super) fn advance<const OPEN: bool>(
         arrays: &mut Own,
         mass: &[f64],
         slot: (usize, usize),
         held: &Held,
+        is_still: bool,
         model: &Material,
         shapes: &Shapes,
         deformation: &Deformation,
@@ -49,6 +51,7 @@ for_each_simd! {
         points: &mut Points,
         motion: &mut Motion,
         booked: &mut Booked,
+        stirred: &mut bool,
         carried: &mut Carried,
         sum: Option<&mut CellSums>,
     ) -> Done {
@@ -63,8 +66,10 @@ for_each_simd! {
         let mut volume = only(held, &volumes.one(0, start));
         // Those that are only added to need not be there before they change.
         let mut state = [Lane::of(0.0); STATE_SIZE];
-        for k in SUMMED..STATE_SIZE {
-            state[k] = states.one(k, start);
+        if !is_still {
+            for k in SUMMED..STATE_SIZE {
+                state[k] = states.one(k, start);
+            }
         }
         if let (false, Some(k)) = (OPEN, model.opening())
             && any(&*only(&volume, &state[k]))
@@ -83,6 +88,7 @@ for_each_simd! {
         stresses.put::<S>(&stress, start, count);
         volumes.put::<S>(&[volume], start, count);
         if advanced.changed {
+            *stirred = true;
             for k in 0..SUMMED {
                 let old = states.one(k, start);
                 for l in 0..LANES {
@@ -92,7 +98,9 @@ for_each_simd! {
             states.put::<S>(&state, start, count);
             states.prefetch_some(0..SUMMED, start + AHEAD);
         }
-        states.prefetch_some(SUMMED..STATE_SIZE, start + AHEAD);
+        if !is_still {
+            states.prefetch_some(SUMMED..STATE_SIZE, start + AHEAD);
+        }
         volumes.prefetch(start + AHEAD);
 
         let (mut x, mut v) = (position.all(start), velocity.all(start));

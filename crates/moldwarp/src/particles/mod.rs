@@ -17,7 +17,7 @@ pub use seeding::{Seed, SeedingError, check_overlap, particles, seeds};
 use crate::Vec3;
 use crate::material::{STATE_SIZE, State};
 
-/// Numbers of a particle that a step changes, and its mass, which a guest has with it.
+/// How many working columns there are.
 pub(crate) const WORKING: usize = 3 + 3 + 2 + 6 + STATE_SIZE;
 
 /// All particles. The arrays have the same length and order.

@@ -233,14 +233,11 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 } = sums.next();
                 for l in motion.who_left(lanes) {
                     let (p, x, n) = (slot.start + l, motion.at(l), get(n, l));
-                    let gone = match may_have_guests {
-                        true => is_outside(n),
-                        false => search.walk(p, n, x, &mut elements[start + l], &mut crossing),
-                    };
-                    if !gone {
-                        continue;
-                    }
-                    if may_have_guests {
+                    if !may_have_guests {
+                        if !search.walk(p, n, x, &mut elements[start + l], &mut crossing) {
+                            continue;
+                        }
+                    } else if is_outside(n) {
                         leaving.put(Leaver {
                             place: p as u32,
                             cell: (number * LANES + l) as u32,
@@ -248,6 +245,8 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                             numbers: arrays.working(start + l, mass[l]),
                             ..Leaver::default()
                         });
+                    } else {
+                        continue;
                     }
                     (mass[l], stress.points.volume[l]) = (0.0, 0.0);
                 }

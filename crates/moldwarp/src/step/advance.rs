@@ -4,18 +4,17 @@
 use super::motion::{Crossing, Motion, Search, look};
 use super::shapes::Shapes;
 use super::state::moved;
-use super::{TILES, guard, leavers, points};
+use super::{TILES, guard, points};
 use crate::Vec3;
 use crate::lanes::ByTile;
 use crate::measure::Part;
-use crate::parallel::{Sum, fold};
+use crate::parallel::fold;
 use crate::simulation::Simulation;
 use crate::stop::Stop;
 
 pub(super) fn run(sim: &mut Simulation) -> Result<(), Stop> {
     let stays = !(sim.driven.moves() || sim.follower.moves());
-    let (crushed, crossing) = points::run(sim, stays);
-    let mut crossing = crossing.plus(locate_leavers(sim));
+    let (crushed, mut crossing) = points::run(sim, stays);
     crossing.outside = crossing.outside.map(|p| sim.guests.home(p, &sim.particles));
     let plain = crossing.is_plain();
     if crushed || !stays || !plain {
@@ -73,28 +72,6 @@ fn move_mesh(sim: &mut Simulation) -> Result<(), Stop> {
         Some(element) => Err(sim.turned_over(element)),
         None => Ok(()),
     }
-}
-
-/// Finds the elements of those that have left theirs and are to be guests.
-fn locate_leavers(sim: &mut Simulation) -> Crossing {
-    let Simulation {
-        plan,
-        particles,
-        active,
-        fields,
-        contacts,
-        outflow,
-        guests,
-        ..
-    } = sim;
-    let search = Search {
-        mesh: &plan.mesh,
-        fields,
-        contacts,
-        outflow,
-        body: &particles.body,
-    };
-    leavers::locate(&mut guests.leavers, active, &search)
 }
 
 /// Finds each particle's element in a mesh that has moved.

@@ -5,7 +5,7 @@ use super::collect::Portions;
 use super::corners::Quad;
 use super::mass::ConsistentMass;
 use crate::Vec3;
-use crate::lanes::{LANES, Lane, VoigtLanes, lane_of, prefetch_lines, prefetch_record};
+use crate::lanes::{LANES, Lane, VoigtLanes, any, lane_of, prefetch_lines, prefetch_record};
 use crate::mesh::Mesh;
 use crate::parallel::fold;
 use std::ops::Range;
@@ -178,6 +178,12 @@ pub enum Summed {
 }
 
 const ZERO: Lane = Lane::of(0.0);
+
+/// Whether no cell of a tile has particles or counts as filled: nothing acts on their nodes.
+#[inline]
+pub(super) fn are_void(sum: &CellSums, fill: &CellFill) -> bool {
+    !any(&*sum.volume) && !any(&*fill.filled)
+}
 
 impl CellSums {
     /// All sums.

@@ -3,9 +3,10 @@
 use super::collect::Shares;
 use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes};
 use super::shapes::Shapes;
+use super::state::are_void;
 use super::{CellFill, CellForce, CellSums, Cells, Shared, smoothing};
 use crate::lanes::{
-    self, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, any, either, for_each_simd, get,
+    self, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, either, for_each_simd, get,
     prefetch_record, set,
 };
 use crate::plan::Smoothing;
@@ -236,7 +237,7 @@ fn gradients(sim: &mut Simulation) {
             let nodes = active.tile_nodes(tile);
             prefetch_record(sums, tile + RECORDS_AHEAD);
             let (sum, fill) = (&sums[tile], &fills[tile]);
-            if !any(&*sum.volume) && !any(&*fill.filled) {
+            if are_void(sum, fill) {
                 continue;
             }
             let weighed = Weighed { sum, fill };

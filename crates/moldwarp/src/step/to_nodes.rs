@@ -3,12 +3,13 @@
 use super::collect::{Share, Shares};
 use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes, set_corner};
 use super::shapes::Shapes;
+use super::state::are_void;
 use super::time_step::{Limits, Steps};
 use super::{Active, BLOCK, CellFill, CellForce, CellMedium, CellSums, Cells, Node};
 use super::{smoothing, strain, sums};
 use crate::lanes::{
-    self, LANES, Lane, NUMBERS_AHEAD, RECORDS_AHEAD, Simd, any, either, for_each_simd, get,
-    lane_of, prefetch_number, prefetch_record, set,
+    self, LANES, Lane, NUMBERS_AHEAD, RECORDS_AHEAD, Simd, either, for_each_simd, get, lane_of,
+    prefetch_number, prefetch_record, set,
 };
 use crate::measure::Part;
 use crate::mesh::{Mesh, NONE};
@@ -174,7 +175,7 @@ fn cell_forces(sim: &mut Simulation, before: f64) {
                 prefetch_record(sums, tile + RECORDS_AHEAD);
                 let is_cell = &active.is_cell.as_chunks().0[tile];
                 find_filled(simd, &densities, is_cell, mixed, fill);
-                if !kept && !any(&*sum.volume) && !any(&*fill.filled) {
+                if !kept && are_void(sum, fill) {
                     continue;
                 }
                 let mut empty = false;

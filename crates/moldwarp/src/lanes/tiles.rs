@@ -51,22 +51,25 @@ pub struct Pile {
     pub more: bool,
 }
 
-/// Cells with their numbers, in windows those with most particles first: tiles of cells with as many particles have
-/// hardly an empty lane.
+/// Cells with their numbers, in windows by how many particles they have: tiles of cells with as many have hardly an empty
+/// lane. Every other window begins with those that have fewest, as a tile may begin in one window and end in the next.
 fn alike_together(
     cells: impl Iterator<Item = (u32, u32)>,
 ) -> impl Iterator<Item = (usize, u32, u32)> {
     let mut cells = cells.enumerate();
     let (mut window, mut next, mut filled) = ([(0, (0, 0)); WINDOW], 0, 0);
-    // Of each cell how few particles it has, and its place in the window: sorts faster than what has more to move.
+    // All bits, if those with most particles come first.
+    let mut turned = 0;
+    // Of each cell how many particles it has, and its place in the window: sorts faster than what has more to move.
     let mut sorted = [0; WINDOW];
     std::iter::from_fn(move || {
         if next == filled {
             (next, filled) = (0, 0);
+            turned = !turned;
             for ((own, key), cell) in window.iter_mut().zip(&mut sorted).zip(&mut cells) {
                 *own = cell;
                 let (_, (_, count)) = cell;
-                *key = u64::from(!count) << 32 | filled as u64;
+                *key = u64::from(count ^ turned) << 32 | filled as u64;
                 filled += 1;
             }
             sorted[..filled].sort_unstable();

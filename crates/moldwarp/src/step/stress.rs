@@ -146,11 +146,12 @@ impl Booked {
         growth: f64,
     ) -> f64 {
         self.least[l] = either(growth < self.least[l], growth, self.least[l]);
-        let middle: Voigt = std::array::from_fn(|k| 0.5 * (turned[k] + new[k]));
+        let both: Voigt = std::array::from_fn(|k| turned[k] + new[k]);
         let volume = 0.5 * volume * (1.0 + growth);
-        let left_out = tensor::trace(&middle) * (1.0 / 3.0) * left_out;
-        self.works[0][l] += tensor::dot(&middle, strain) * volume;
-        self.works[1][l] += left_out * volume;
+        let half = 0.5 * volume;
+        let left_out = tensor::trace(&both) * (1.0 / 3.0) * left_out;
+        self.works[0][l] += tensor::dot(&both, strain) * half;
+        self.works[1][l] += left_out * half;
         volume
     }
 

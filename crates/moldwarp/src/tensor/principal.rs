@@ -11,7 +11,11 @@
 //!   (b + c)/2 I + (a − (b + c)/2) P + (b − c)/(2 r) D,
 //!
 //! which takes no directions. The way to the lonely root resembles the non-iterative scheme of D. Eberly, "A robust
-//! eigensolver for 3×3 symmetric matrices" (2014), with Newton's iteration instead of trigonometric functions.
+//! eigensolver for 3×3 symmetric matrices" (2014), with polynomials instead of trigonometric functions. The trace of the
+//! adjugate is the product of the distances to the other values, 3β² − 3.
+//!
+//! Stresses side by side wait for each other's results, and for quotients and roots longest: there are few of them, and
+//! polynomials are added up in pairs.
 
 use super::Voigt;
 use crate::lanes::either;
@@ -118,11 +122,14 @@ fn square(b: &Voigt) -> f64 {
 fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let unit_squared = norm_squared * (1.0 / 6.0);
     let unit = unit_squared.sqrt();
+    // As 1/√x = √x/x, the quotient does not wait for the root.
+    let over = 1.0 / (unit_squared * unit_squared);
     let determinant = b[0] * (b[1] * b[2] - b[4] * b[4]) - b[3] * (b[3] * b[2] - b[4] * b[5])
         + b[5] * (b[3] * b[4] - b[1] * b[5]);
-    let half = 0.5 * determinant / (unit * unit_squared);
-    let alone = unit * lonely_root(half.abs().min(1.0)).copysign(half);
-    let lonely = projector(b, alone);
+    let half = (0.5 * determinant) * (unit * over);
+    let (root, over_distances) = lonely_root(half.abs().min(1.0), unit_squared * over);
+    let alone = unit * root.copysign(half);
+    let lonely = projector(b, alone, over_distances);
 
     let centre = -0.5 * alone;
     let apart = alone - centre;
@@ -130,7 +137,8 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
         let own = b[k] - lonely[k] * apart;
         if k < 3 { own - centre } else { own }
     });
-    let radius = (0.5 * square(&plane)).sqrt();
+    let radius_squared = 0.5 * square(&plane);
+    let radius = radius_squared.sqrt();
     // Equal values, far below round-off.
     let differ = radius > 1e-20 * unit;
     // The lonely value is first or last.
@@ -147,26 +155,67 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
         last,
         lonely,
         plane,
-        over_radius: either(differ, 1.0 / radius, 0.0),
+        over_radius: either(differ, radius * (1.0 / radius_squared), 0.0),
     }
 }
 
-/// The largest root of β³ − 3β = 2h for 0 ≤ h ≤ 1, 2 cos(arccos(h) / 3).
+/// The largest root β of β³ − 3β = 2h for 0 ≤ h ≤ 1, 2 cos(arccos(h) / 3), and `factor` / (3β² − 3).
 #[inline(always)]
-fn lonely_root(h: f64) -> f64 {
-    // Interpolates in Chebyshev points, off by at most 1e-5. A Newton step squares that error;
-    // the second one can keep the slope of the first.
-    let start = (1.732_060_86 + h * 0.332_823_44)
-        + (h * h) * ((h * 0.035_024_38 - 0.091_843_87) - (h * h) * 0.008_070_8);
-    let over_slope = 1.0 / (3.0 * start * start - 3.0);
-    let excess = |root: f64| root * (root * root - 3.0) - 2.0 * h;
-    let root = start - excess(start) * over_slope;
-    root - excess(root) * over_slope
+fn lonely_root(h: f64, factor: f64) -> (f64, f64) {
+    let h2 = h * h;
+    let h4 = h2 * h2;
+    let h8 = h4 * h4;
+    let linear = |c: &[f64], k: usize| c[k] + c[k + 1] * h;
+    let cubic = |c: &[f64], k: usize| linear(c, k) + linear(c, k + 2) * h2;
+    let seventh = |c: &[f64], k: usize| cubic(c, k) + cubic(c, k + 4) * h4;
+    let fifteenth = seventh(&ROOT, 0) + seventh(&ROOT, 8) * h8;
+    let root = fifteenth + linear(&ROOT, 16) * (h8 * h8);
+    let start = seventh(&OVER, 0) + linear(&OVER, 8) * h8;
+    // One step of Newton's iteration for a reciprocal.
+    let over = (start * (factor * (1.0 / 3.0))) * (2.0 - (root * root - 1.0) * start);
+    (root, over)
 }
 
-/// Onto the direction of a simple principal value.
+/// Coefficients of 2 cos(arccos(h) / 3) for 0 ≤ h ≤ 1, the constant first: it interpolates in Chebyshev points, off by at
+/// most 2e-16.
+const ROOT: [f64; 18] = [
+    1.732_050_807_568_877_4,
+    0.333_333_333_333_225_23,
+    -0.096_225_044_853_218_92,
+    0.049_382_715_543_020_87,
+    -0.031_184_030_706_843_89,
+    0.021_947_710_673_387_81,
+    -0.016_514_462_848_362_21,
+    0.012_996_017_525_005_404,
+    -0.010_535_428_631_981_057,
+    0.008_650_749_231_281_842,
+    -0.007_002_755_080_584_41,
+    0.005_358_373_387_141_181,
+    -0.003_669_219_985_073_899_2,
+    0.002_113_847_064_559_300_5,
+    -0.000_957_453_682_072_820_2,
+    0.000_313_744_963_885_133_2,
+    -6.534_997_416_054_092e-5,
+    6.446_471_913_600_215e-6,
+];
+
+/// The same of 1 / (β² − 1), off by at most 2e-8 of it.
+const OVER: [f64; 10] = [
+    0.499_999_994_471_837_9,
+    -0.288_674_023_758_624_17,
+    0.222_184_690_668_496_47,
+    -0.186_601_899_260_060_27,
+    0.161_100_335_713_740_27,
+    -0.134_005_105_036_115_76,
+    0.097_005_751_060_189_65,
+    -0.053_448_995_384_657_64,
+    0.018_876_255_380_243_93,
+    -0.003_103_673_374_029_122,
+];
+
+/// Onto the direction of a simple principal value; `over` is 1 over the product of the distances to the other values.
 #[inline(always)]
-fn projector(b: &Voigt, value: f64) -> Voigt {
+fn projector(b: &Voigt, value: f64, over: f64) -> Voigt {
     let (x, y, z) = (b[0] - value, b[1] - value, b[2] - value);
     let adjugate = [
         y * z - b[4] * b[4],
@@ -176,8 +225,6 @@ fn projector(b: &Voigt, value: f64) -> Voigt {
         b[5] * b[3] - b[4] * x,
         b[3] * b[4] - b[5] * y,
     ];
-    // The product of the distances to the other values.
-    let over = 1.0 / super::trace(&adjugate);
     adjugate.map(|a| a * over)
 }
 
@@ -231,6 +278,18 @@ mod tests {
             assert!(value <= 4e-15 * scale, "{v:?} × {scale}: {value}");
             assert!(tensor <= 4e-15 * scale, "{v:?} × {scale}: {tensor}");
             assert!(other <= 8e-15 * scale, "{v:?} × {scale}: {other}");
+        }
+    }
+
+    #[test]
+    fn polynomials_give_the_lonely_root() {
+        for n in 0..=1000 {
+            let h = f64::from(n) / 1000.0;
+            let exact = 2.0 * libm::cos(libm::acos(h) / 3.0);
+            let (root, over) = lonely_root(h, 6.0);
+            assert!((root - exact).abs() < 9e-16, "{h}: {root} {exact}");
+            let exact = 2.0 / (exact * exact - 1.0);
+            assert!((over / exact - 1.0).abs() < 3e-15, "{h}: {over} {exact}");
         }
     }
 

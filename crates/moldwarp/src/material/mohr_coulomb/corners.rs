@@ -81,29 +81,35 @@ impl Found {
     }
 }
 
-/// Constants of the surface and of the flow.
+/// Constants of the surface and of the flow. What the return needs is computed once: what is the same for all particles
+/// would still be computed for each few.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Corners {
-    /// sin φ, 1 + sin φ, 1 − sin φ (without cancellation), c cos φ.
+    /// sin φ, 1 + sin φ, 1 − sin φ (without cancellation), 2 c cos φ.
     sin: f64,
     up: f64,
     down: f64,
-    half_strength: f64,
-    /// 1 + sin ψ, 1 − sin ψ: shear plane ij flows along (1 + sin ψ) eᵢ − (1 − sin ψ) eⱼ.
+    strength: f64,
+    /// 1 + sin ψ, 1 − sin ψ: shear plane ij flows along (1 + sin ψ) eᵢ − (1 − sin ψ) eⱼ. And their reciprocals.
     flow_up: f64,
     flow_down: f64,
+    over_flow_up: f64,
+    over_flow_down: f64,
     /// T, or c cot φ.
     tip: f64,
     has_cutoff: bool,
     /// Smallest principal stress where shear plane and cut-off meet.
     foot: f64,
-    /// λ, 2G, ν, and ν/(1 + ν).
+    /// λ, 2G, 1/(2G), ν, and ν/(1 + ν).
     lame: f64,
     shear: f64,
+    over_shear: f64,
     poisson: f64,
     poisson_share: f64,
-    /// C times the flow direction of plane 13.
+    /// C times the flow direction of plane 13, and means of its two upper and its two lower components.
     relief: [f64; 3],
+    upper_relief: f64,
+    lower_relief: f64,
     /// 1 / n₁₃ · C m₁₃, and 1 / n₁₃ · C (m₁₃ + m₂₃), 1 / n₁₃ · C (m₁₃ + m₁₂).
     plane: f64,
     upper: f64,
@@ -118,7 +124,7 @@ impl Corners {
         };
         let (sin, cos, up, down) = sine(parameters.friction_angle);
         let (flow_sin, _, flow_up, flow_down) = sine(parameters.dilation_angle);
-        let half_strength = parameters.cohesion * cos;
+        let strength = 2.0 * parameters.cohesion * cos;
         let cutoff = parameters.effective_cutoff();
         let tip = cutoff.or(parameters.apex()).unwrap_or(f64::INFINITY);
         let (lame, shear) = (elastic.lame(), 2.0 * elastic.shear_modulus());
@@ -130,17 +136,22 @@ impl Corners {
             sin,
             up,
             down,
-            half_strength,
+            strength,
             flow_up,
             flow_down,
+            over_flow_up: 1.0 / flow_up,
+            over_flow_down: 1.0 / flow_down,
             tip,
             has_cutoff: cutoff.is_some(),
-            foot: (up * tip - 2.0 * half_strength) / down,
+            foot: (up * tip - strength) / down,
             lame,
             shear,
+            over_shear: 1.0 / shear,
             poisson,
             poisson_share: poisson / (1.0 + poisson),
             relief,
+            upper_relief: 0.5 * (relief[0] + relief[1]),
+            lower_relief: 0.5 * (relief[1] + relief[2]),
             plane: 1.0 / own,
             upper: 1.0 / (2.0 * own - shear * up * flow_up),
             lower: 1.0 / (2.0 * own - shear * down * flow_down),
@@ -153,7 +164,7 @@ impl Corners {
 
     /// c cos φ, Pa.
     pub(super) fn half_strength(&self) -> f64 {
-        self.half_strength
+        0.5 * self.strength
     }
 
     /// T, or c cot φ.
@@ -164,7 +175,7 @@ impl Corners {
     /// f of a pair of principal stresses.
     #[inline(always)]
     pub(super) fn shear_function(&self, a: f64, b: f64) -> f64 {
-        self.up * a - self.down * b - 2.0 * self.half_strength
+        self.up * a - self.down * b - self.strength
     }
 
     /// max(f, σ₁ − T) from the largest and the smallest principal stress.
@@ -216,10 +227,10 @@ impl Corners {
     /// The same without a cut-off, and without branches, so that several can be returned side by side.
     #[inline(always)]
     pub(super) fn return_without_cutoff(&self, t: &[f64; 3]) -> Found {
-        let plane = self.onto_plane(t);
-        let upper = plane.or(self.onto_upper_edge(t));
-        let lower = upper.or(self.onto_lower_edge(t));
-        lower.or(self.onto_apex(t))
+        // The same as one after another; two pairs wait less for each other.
+        let upper = self.onto_plane(t).or(self.onto_upper_edge(t));
+        let lower = self.onto_lower_edge(t).or(self.onto_apex(t));
+        upper.or(lower)
     }
 
     /// 2G C⁻¹ d.
@@ -256,7 +267,7 @@ impl Corners {
             stress,
             corner,
             yielding: corner.yielding(),
-            opening: larger(opening, 0.0) * (1.0 / self.shear),
+            opening: larger(opening, 0.0) * self.over_shear,
             violation,
         }
     }
@@ -273,12 +284,11 @@ impl Corners {
     }
 
     /// Sum s of both planes' factors from f₁₃ + f₂₃ = 0, their difference from σ₁ = σ₂.
-    // Products with reciprocals: these are the same for all lanes.
     #[inline(always)]
     fn onto_upper_edge(&self, t: &[f64; 3]) -> Found {
         let sum = (self.shear_function(t[0], t[2]) + self.shear_function(t[1], t[2])) * self.upper;
-        let difference = (t[0] - t[1]) * (1.0 / self.flow_up);
-        let high = 0.5 * (t[0] + t[1]) - sum * 0.5 * (self.relief[0] + self.relief[1]);
+        let difference = (t[0] - t[1]) * self.over_flow_up;
+        let high = 0.5 * (t[0] + t[1]) - sum * self.upper_relief;
         let stress = [high, high, t[2] - sum * self.relief[2]];
         self.shear_result(stress, Corner::UpperEdge, difference - sum * self.shear)
     }
@@ -286,8 +296,8 @@ impl Corners {
     #[inline(always)]
     fn onto_lower_edge(&self, t: &[f64; 3]) -> Found {
         let sum = (self.shear_function(t[0], t[2]) + self.shear_function(t[0], t[1])) * self.lower;
-        let difference = (t[1] - t[2]) * (1.0 / self.flow_down);
-        let low = 0.5 * (t[1] + t[2]) - sum * 0.5 * (self.relief[1] + self.relief[2]);
+        let difference = (t[1] - t[2]) * self.over_flow_down;
+        let low = 0.5 * (t[1] + t[2]) - sum * self.lower_relief;
         let stress = [t[0] - sum * self.relief[0], low, low];
         self.shear_result(stress, Corner::LowerEdge, difference - sum * self.shear)
     }

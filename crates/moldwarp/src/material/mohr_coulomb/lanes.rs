@@ -72,8 +72,8 @@ impl MohrCoulomb {
                 }
                 let excess: Voigt = std::array::from_fn(|k| trial[k] - new[k]);
                 let plastic_strain = self.compliance(&excess);
-                let middle: Voigt = std::array::from_fn(|k| 0.5 * (before[k] + new[k]));
-                dissipated[l] = tensor::dot(&middle, &plastic_strain);
+                let both: Voigt = std::array::from_fn(|k| before[k] + new[k]);
+                dissipated[l] = 0.5 * tensor::dot(&both, &plastic_strain);
                 set(stress, l, new);
                 state[0][l] += equivalent_strain(&plastic_strain);
                 state[1][l] += tensor::trace(&plastic_strain);

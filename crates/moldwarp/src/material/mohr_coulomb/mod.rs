@@ -75,8 +75,11 @@ pub struct MohrCoulomb {
     lame: f64,
     shear_modulus: f64,
     bulk_modulus: f64,
-    /// √(1 + sin²φ/3): the cone within the pyramid.
-    cone: f64,
+    /// 1/(2G) and 1/(3K), 1/Pa.
+    over_shear: f64,
+    over_bulk: f64,
+    /// 1 + sin²φ/3: √ of it, the cone within the pyramid.
+    cone_squared: f64,
     /// Stresses below this count as none, Pa.
     negligible: f64,
 }
@@ -187,14 +190,18 @@ impl MohrCoulomb {
         parameters.check()?;
         let corners = Corners::new(&elastic, &parameters);
         let sin = corners.sin_friction();
+        let shear_modulus = elastic.shear_modulus();
+        let bulk_modulus = elastic.lame() + 2.0 / 3.0 * shear_modulus;
         Ok(MohrCoulomb {
             elastic,
             parameters,
             corners,
             lame: elastic.lame(),
-            shear_modulus: elastic.shear_modulus(),
-            bulk_modulus: elastic.lame() + 2.0 / 3.0 * elastic.shear_modulus(),
-            cone: (1.0 + sin * sin / 3.0).sqrt(),
+            shear_modulus,
+            bulk_modulus,
+            over_shear: 0.5 / shear_modulus,
+            over_bulk: 1.0 / (3.0 * bulk_modulus),
+            cone_squared: 1.0 + sin * sin / 3.0,
             negligible: 1e-12 * (elastic.young_modulus + corners.tip()),
         })
     }
@@ -281,7 +288,7 @@ impl MohrCoulomb {
         // No branches: this is asked of particles side by side.
         (shear >= 0.0)
             & (tension >= 0.0)
-            & (j2 * (self.cone * self.cone) <= shear * shear)
+            & (j2 * self.cone_squared <= shear * shear)
             & (4.0 / 3.0 * j2 <= tension * tension)
     }
 
@@ -350,9 +357,8 @@ impl MohrCoulomb {
     #[inline(always)]
     fn compliance(&self, stress: &Voigt) -> Voigt {
         let mean = tensor::trace(stress) * (1.0 / 3.0);
-        // Reciprocals are the same for all lanes.
-        let half = 0.5 / self.shear_modulus;
-        let bulk = mean * (1.0 / (3.0 * self.bulk_modulus));
+        let half = self.over_shear;
+        let bulk = mean * self.over_bulk;
         [
             (stress[0] - mean) * half + bulk,
             (stress[1] - mean) * half + bulk,

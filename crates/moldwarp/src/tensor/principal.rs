@@ -27,8 +27,9 @@ pub struct Principal {
     pub values: [f64; 3],
     /// Whether the lonely value is the smallest one; else it is the largest one.
     last: bool,
-    /// Projector onto its direction.
-    lonely: Voigt,
+    /// The projector onto its direction is `over` times this.
+    adjugate: Voigt,
+    over: f64,
     /// D, or nothing where r is far below round-off.
     plane: Voigt,
     /// 1 / r, or 0.
@@ -61,7 +62,8 @@ pub fn principal(s: &Voigt) -> Principal {
         Principal {
             values: [s[0], s[1], s[2]],
             last: false,
-            lonely: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            adjugate: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            over: 1.0,
             plane: [0.0; 6],
             over_radius: 0.0,
         }
@@ -78,9 +80,10 @@ impl Principal {
             either(self.last, *second, *third),
         );
         let centre = 0.5 * (top + bottom);
-        let (along, across) = (alone - centre, 0.5 * (top - bottom) * self.over_radius);
+        let along = (alone - centre) * self.over;
+        let across = 0.5 * (top - bottom) * self.over_radius;
         std::array::from_fn(|k| {
-            let own = self.lonely[k] * along + self.plane[k] * across;
+            let own = self.adjugate[k] * along + self.plane[k] * across;
             if k < 3 { centre + own } else { own }
         })
     }
@@ -129,12 +132,12 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let half = (0.5 * determinant) * (unit * over);
     let (root, over_distances) = lonely_root(half.abs().min(1.0), unit_squared * over);
     let alone = unit * root.copysign(half);
-    let lonely = projector(b, alone, over_distances);
+    let adjugate = adjugate(b, alone);
 
     let centre = -0.5 * alone;
-    let apart = alone - centre;
+    let apart = (alone - centre) * over_distances;
     let plane: Voigt = std::array::from_fn(|k| {
-        let own = b[k] - lonely[k] * apart;
+        let own = b[k] - adjugate[k] * apart;
         if k < 3 { own - centre } else { own }
     });
     let radius_squared = 0.5 * square(&plane);
@@ -153,7 +156,8 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
             either(last, alone, bottom),
         ],
         last,
-        lonely,
+        adjugate,
+        over: over_distances,
         plane,
         over_radius: either(differ, radius * (1.0 / radius_squared), 0.0),
     }
@@ -213,19 +217,18 @@ const OVER: [f64; 10] = [
     -0.003_103_673_374_029_122,
 ];
 
-/// Onto the direction of a simple principal value; `over` is 1 over the product of the distances to the other values.
+/// adj(B − x I), for a principal value x the projector onto its direction times its distances to the other values.
 #[inline(always)]
-fn projector(b: &Voigt, value: f64, over: f64) -> Voigt {
+fn adjugate(b: &Voigt, value: f64) -> Voigt {
     let (x, y, z) = (b[0] - value, b[1] - value, b[2] - value);
-    let adjugate = [
+    [
         y * z - b[4] * b[4],
         z * x - b[5] * b[5],
         x * y - b[3] * b[3],
         b[4] * b[5] - b[3] * z,
         b[5] * b[3] - b[4] * x,
         b[3] * b[4] - b[5] * y,
-    ];
-    adjugate.map(|a| a * over)
+    ]
 }
 
 #[cfg(test)]

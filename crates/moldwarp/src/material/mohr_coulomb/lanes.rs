@@ -1,7 +1,7 @@
 //! The model's update of particles side by side: the same numbers as [`MohrCoulomb::update`], bit for bit.
 
 use super::super::{Advanced, STATE_SIZE, Strained};
-use super::{MohrCoulomb, YieldState, equivalent_strain};
+use super::{MohrCoulomb, YieldState};
 use crate::lanes::{
     Held, LANES, Lane, Simd, VoigtLanes, any, either, for_each_simd, get, held, larger, set,
 };
@@ -36,14 +36,15 @@ impl MohrCoulomb {
                 unsure[l] = either(gap.kind < STAYS, unsure[l], 0.0);
             }
         }
-        for l in 0..LANES {
-            let sure = self.surely_elastic(&get(stress, l));
-            unsure[l] = either(sure, 0.0, unsure[l]);
+        // Where some have yielded, some will again: then principal values tell of all.
+        let yielded = any(&*state[3]);
+        if !yielded {
+            self.find_unsure(stress, &mut unsure);
         }
-        let (doubts, yielded) = (any(&*unsure), any(&*state[3]));
+        let doubts = yielded || any(&*unsure);
         state[3] = Lane::of(0.0);
         let mut advanced = Advanced {
-            changed: doubts | yielded | OPEN,
+            changed: doubts | OPEN,
             ..Advanced::default()
         };
         if doubts | OPEN {
@@ -55,9 +56,8 @@ impl MohrCoulomb {
             for l in 0..LANES {
                 let mut trial = get(stress, l);
                 let one = One::of(self, &trial);
-                let unsure = unsure[l] > 0.0;
-                odd[l] = either(unsure & one.odd, 1.0, 0.0);
-                let yields = unsure & (one.yielding > 0.0);
+                odd[l] = either(one.odd, unsure[l], 0.0);
+                let yields = (unsure[l] > 0.0) & !one.odd & (one.yielding > 0.0);
                 let new: Voigt = std::array::from_fn(|k| either(yields, one.stress[k], trial[k]));
                 let before = get(before, l);
                 let opening = state[2][l];
@@ -71,19 +71,32 @@ impl MohrCoulomb {
                     changes |= gaps[l] > 0.0;
                 }
                 let excess: Voigt = std::array::from_fn(|k| trial[k] - new[k]);
-                let plastic_strain = self.compliance(&excess);
+                let (plastic_strain, shear, volume) = self.strain_of(&excess);
                 let both: Voigt = std::array::from_fn(|k| before[k] + new[k]);
                 dissipated[l] = 0.5 * tensor::dot(&both, &plastic_strain);
                 set(stress, l, new);
-                state[0][l] += equivalent_strain(&plastic_strain);
-                state[1][l] += tensor::trace(&plastic_strain);
+                state[0][l] += shear;
+                state[1][l] += volume;
                 state[2][l] = either(changes, larger(opening + wider, 0.0), opening);
                 state[3][l] = either(changes, yielding, 0.0);
             }
-            (advanced.odd, advanced.plastic) = (any(&*odd), true);
+            advanced.plastic = true;
+            if any(&*odd) {
+                self.find_unsure(stress, &mut odd);
+                advanced.odd = any(&*odd);
+            }
             advanced.open = any(&*state[2]);
         }
         advanced
+    }
+
+    /// Leaves only those of `unsure` that are not surely elastic.
+    #[inline(always)]
+    fn find_unsure(&self, stress: &VoigtLanes, unsure: &mut Lane) {
+        for l in 0..LANES {
+            let sure = self.surely_elastic(&get(stress, l));
+            unsure[l] = either(sure, 0.0, unsure[l]);
+        }
     }
 
     pub(in super::super) fn update_lanes(&self, simd: Simd, s: &mut Strained, lanes: usize) {

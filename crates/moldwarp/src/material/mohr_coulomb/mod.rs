@@ -78,7 +78,7 @@ pub struct MohrCoulomb {
     /// 1/(2G) and 1/(3K), 1/Pa.
     over_shear: f64,
     over_bulk: f64,
-    /// 1 + sin²φ/3: √ of it, the cone within the pyramid.
+    /// 1 + sin²φ/3, and little more: √ of it, the cone within the pyramid.
     cone_squared: f64,
     /// Stresses below this count as none, Pa.
     negligible: f64,
@@ -201,7 +201,7 @@ impl MohrCoulomb {
             bulk_modulus,
             over_shear: 0.5 / shear_modulus,
             over_bulk: 1.0 / (3.0 * bulk_modulus),
-            cone_squared: 1.0 + sin * sin / 3.0,
+            cone_squared: (1.0 + sin * sin / 3.0) * (1.0 + 1e-9),
             negligible: 1e-12 * (elastic.young_modulus + corners.tip()),
         })
     }
@@ -277,7 +277,8 @@ impl MohrCoulomb {
         }
     }
 
-    /// The cone inscribed in the pyramid and the sphere-like bound on σ₁: no principal values.
+    /// The cone inscribed in the pyramid and the sphere-like bound on σ₁: no principal values. True only where the yield
+    /// function of these is negative with any round-off.
     #[inline(always)]
     fn surely_elastic(&self, s: &Voigt) -> bool {
         let mean = tensor::trace(s) * (1.0 / 3.0);
@@ -356,16 +357,26 @@ impl MohrCoulomb {
     /// C⁻¹ σ, with engineering shear strains.
     #[inline(always)]
     fn compliance(&self, stress: &Voigt) -> Voigt {
-        let mean = tensor::trace(stress) * (1.0 / 3.0);
-        let half = self.over_shear;
+        self.strain_of(stress).0
+    }
+
+    /// C⁻¹ σ, √(2/3 e : e) with its deviator e, and its trace.
+    #[inline(always)]
+    fn strain_of(&self, stress: &Voigt) -> (Voigt, f64, f64) {
+        let (half, mean) = (self.over_shear, tensor::trace(stress) * (1.0 / 3.0));
         let bulk = mean * self.over_bulk;
-        [
-            (stress[0] - mean) * half + bulk,
-            (stress[1] - mean) * half + bulk,
-            (stress[2] - mean) * half + bulk,
-            2.0 * half * stress[3],
-            2.0 * half * stress[4],
-            2.0 * half * stress[5],
-        ]
+        let (x, y, z) = (stress[0] - mean, stress[1] - mean, stress[2] - mean);
+        let shear = [stress[3], stress[4], stress[5]];
+        let strain = [
+            x * half + bulk,
+            y * half + bulk,
+            z * half + bulk,
+            2.0 * half * shear[0],
+            2.0 * half * shear[1],
+            2.0 * half * shear[2],
+        ];
+        let mixed = shear[0] * shear[0] + shear[1] * shear[1] + shear[2] * shear[2];
+        let square = (x * x + y * y + z * z) + 2.0 * mixed;
+        (strain, (2.0 / 3.0 * square).sqrt() * half, 3.0 * bulk)
     }
 }

@@ -73,28 +73,34 @@ pub fn times(s: &Voigt, n: Vec3) -> Vec3 {
     )
 }
 
-/// Q σ Qᵀ.
+/// Q σ Qᵀ of a rotation Q.
 #[inline(always)]
 pub fn rotate(s: &Voigt, q: &Mat3) -> Voigt {
-    let turned = *q * to_matrix(s);
-    let (x, y, z) = (turned.row(0), turned.row(1), turned.row(2));
     let (a, b, c) = (q.row(0), q.row(1), q.row(2));
-    [x.dot(a), y.dot(b), z.dot(c), x.dot(b), y.dot(c), z.dot(a)]
+    let (x, y) = (times(s, a), times(s, b));
+    let (xx, yy) = (x.dot(a), y.dot(b));
+    // The trace stays; changes, not the trace, so that zz stays to the last bit if nothing turns.
+    let zz = s[2] + ((s[0] - xx) + (s[1] - yy));
+    [xx, yy, zz, x.dot(b), y.dot(c), x.dot(c)]
 }
 
-/// The rotation of a step from the spin increment, Q = (I − W/2)⁻¹ (I + W/2) with W the skew
-/// part of `gradient`: orthogonal for any W (Hughes and Winget 1980).
+/// Half the axial vector of the skew part W of a gradient.
 #[inline(always)]
-pub fn spin_rotation(gradient: &Mat3) -> Mat3 {
-    // With the half axial vector r = ½ axial(W), Q = I + 2/(1+r²) (R + R²), R = r×.
+pub fn half_spin(gradient: &Mat3) -> Vec3 {
     let (x, y, z) = (gradient.x_axis, gradient.y_axis, gradient.z_axis);
-    let r = 0.25 * Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x);
+    0.25 * Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x)
+}
+
+/// The rotation of a step from the spin increment, Q = (I − W/2)⁻¹ (I + W/2), orthogonal for any W (Hughes and Winget 1980).
+/// With half the axial vector of W, r, it is I + 2/(1+r²) (R + R²), R = r×; given are d r, d, and 2/(d² + d²r²) of any d.
+#[inline(always)]
+pub fn spin_rotation(r: Vec3, d: f64, factor: f64) -> Mat3 {
     let rate = Mat3::from_cols(
         Vec3::new(0.0, r.z, -r.y),
         Vec3::new(-r.z, 0.0, r.x),
         Vec3::new(r.y, -r.x, 0.0),
     );
-    Mat3::IDENTITY + (rate + rate * rate) * (2.0 / (1.0 + r.length_squared()))
+    Mat3::IDENTITY + (rate * d + rate * rate) * factor
 }
 
 /// √(3/2 s : s) with s the deviator: von Mises' equivalent stress, Pa.
@@ -112,7 +118,8 @@ mod tests {
     #[test]
     fn the_spin_rotation_is_orthogonal_and_matches_its_definition() {
         let g = Mat3::from_cols_array(&[0.1, 0.4, -0.3, 0.7, -0.2, 0.5, 0.2, -0.6, 0.3]);
-        let q = spin_rotation(&g);
+        let (r, d) = (half_spin(&g), 3.0);
+        let q = spin_rotation(d * r, d, 2.0 / (d * d * (1.0 + r.length_squared())));
         assert!((q * q.transpose()).abs_diff_eq(Mat3::IDENTITY, 1e-15));
         let w = (g - g.transpose()) * 0.5;
         let definition = (Mat3::IDENTITY - w * 0.5).inverse() * (Mat3::IDENTITY + w * 0.5);

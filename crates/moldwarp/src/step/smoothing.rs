@@ -35,9 +35,15 @@ use std::ops::Range;
 
 /// w_e, m³, of a cell of this `whole` volume of which particles have `volume`, `closed` of it not separated.
 #[inline(always)]
-pub(super) fn weight(filled: f64, volume: f64, closed: f64, whole: f64) -> f64 {
-    let weight = either(filled > 0.0, whole, volume.min(whole));
+fn weight(filled: f64, volume: f64, closed: f64, whole: f64) -> f64 {
+    let weight = whole_weight(filled, volume, whole);
     either(closed < volume, weight * closed / volume, weight)
+}
+
+/// The same as if none of it were separated.
+#[inline(always)]
+pub(super) fn whole_weight(filled: f64, volume: f64, whole: f64) -> f64 {
+    either(filled > 0.0, whole, volume.min(whole))
 }
 
 /// θ_n of each node.

@@ -11,7 +11,7 @@ use crate::lanes::{
 };
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
-use crate::tensor::{self, Voigt};
+use crate::tensor::{self, Voigt, half_spin, spin_rotation};
 use crate::{Mat3, Vec3};
 use std::ops::Range;
 
@@ -31,17 +31,27 @@ pub(super) fn gradient(g: &[Vec3; 3], u: [Vec3; 4]) -> Mat3 {
     )
 }
 
-/// ∇Δu (I + ½∇Δu)⁻¹, the gradient in the configuration in the middle of the step: a rigid rotation has none of it but
-/// spin, and its trace is the logarithmic volume strain to third order.
+/// ∇Δu (I + ½∇Δu)⁻¹, the gradient in the configuration in the middle of the step, as a matrix A and what it is to be
+/// divided by, d: a rigid rotation has none of it but spin, and its trace is the logarithmic volume strain to third order.
+///
+/// As adj(I + ½G) = (1 + ½I₁) I − ½G + ¼ adj G, and adj G = G² − I₁G + I₂I, with the invariants of G = ∇Δu
+///
+///   A = G − ½ adj G + (½I₂ + ¼I₃) I,   d = det(I + ½G) = 1 + ½I₁ + ¼I₂ + ⅛I₃,   tr A = I₁ + I₂ + ¾I₃.
 #[inline(always)]
-pub(super) fn midpoint(gradient: &Mat3) -> Mat3 {
-    let middle = Mat3::IDENTITY + *gradient * 0.5;
-    let (x, y, z) = (middle.x_axis, middle.y_axis, middle.z_axis);
+pub(super) fn midpoint(gradient: &Mat3) -> (Mat3, f64) {
+    let (x, y, z) = (gradient.x_axis, gradient.y_axis, gradient.z_axis);
+    // Rows of the adjugate.
     let (a, b, c) = (y.cross(z), z.cross(x), x.cross(y));
-    let over = 1.0 / z.dot(c);
-    // Rows of the inverse are a, b and c over the determinant.
-    let inverse = Mat3::from_cols(a * over, b * over, c * over).transpose();
-    *gradient * inverse
+    let first = x.x + y.y + z.z;
+    let (second, third) = (a.x + b.y + c.z, x.dot(a));
+    let own = 0.5 * second + 0.25 * third;
+    let middle = Mat3::from_cols(
+        x + Vec3::new(own - 0.5 * a.x, -0.5 * b.x, -0.5 * c.x),
+        y + Vec3::new(-0.5 * a.y, own - 0.5 * b.y, -0.5 * c.y),
+        z + Vec3::new(-0.5 * a.z, -0.5 * b.z, own - 0.5 * c.z),
+    );
+    let determinant = 1.0 + 0.5 * first + 0.25 * second + 0.125 * third;
+    (middle, determinant)
 }
 
 /// Deformation of cells side by side in a step.
@@ -103,19 +113,31 @@ for_each_simd! {
         for l in 0..LANES {
             let corners = all_corners(&moved, l);
             let gradient = gradient(&shapes.gradients(l), corners);
-            let midpoint = midpoint(&gradient);
+            let (middle, determinant) = midpoint(&gradient);
+            let trace = middle.x_axis.x + middle.y_axis.y + middle.z_axis.z;
+            // Growth is the first of these over the second one.
+            let half = 0.125 * averaged[l];
+            let larger = either(smooth, 1.0 + half, determinant + 0.5 * trace);
+            let smaller = either(smooth, 1.0 - half, determinant - 0.5 * trace);
+            let spin = half_spin(&middle);
+            let square = determinant * determinant + spin.length_squared();
+            // One quotient in place of three, which wait for each other.
+            let over_both = 1.0 / (determinant * smaller * square);
+            let over = over_both * (smaller * square);
+            let midpoint = middle * over;
             // Up to round-off that of `volumetric`.
-            let volumetric = midpoint.x_axis.x + midpoint.y_axis.y + midpoint.z_axis.z;
+            let volumetric = trace * over;
             let smoothed = either(smooth, 0.25 * averaged[l], volumetric);
             let mut strain = tensor::strain(&midpoint);
             let change = (smoothed - volumetric) * (1.0 / 3.0);
             (0..3).for_each(|k| strain[k] += change);
+            let turn = spin_rotation(spin, determinant, 2.0 * over_both * (determinant * smaller));
             set(&mut d.gradient, l, gradient.to_cols_array());
             set(&mut d.origin, l, corners[0].to_array());
             (d.volumetric[l], d.left_out[l]) = (volumetric, volumetric - smoothed);
-            d.growth[l] = growth(smoothed);
+            d.growth[l] = larger * over_both * (determinant * square);
             set(&mut d.strain, l, strain);
-            set(&mut d.turn, l, tensor::spin_rotation(&midpoint).to_cols_array());
+            set(&mut d.turn, l, turn.to_cols_array());
         }
     }
 }
@@ -137,14 +159,21 @@ impl Deformation {
     }
 }
 
-/// Trace of [`midpoint`]: with the invariants of ∇Δu, (I₁ + I₂ + ¾ I₃) / (1 + ½ I₁ + ¼ I₂ + ⅛ I₃).
+/// Of a tetrahedron with these edges from node 0 on, and of what these grow by, the trace of what [`midpoint`] finds, as what
+/// is to be divided by the second number; and its volume times six. With the invariants of ∇Δu, (I₁ + I₂ + ¾ I₃) /
+/// (1 + ½ I₁ + ¼ I₂ + ⅛ I₃).
 #[inline(always)]
-fn volumetric(gradient: &Mat3) -> f64 {
-    let (x, y, z) = (gradient.x_axis, gradient.y_axis, gradient.z_axis);
-    let first = x.x + y.y + z.z;
-    let second = (x.x * y.y - x.y * y.x) + (y.y * z.z - y.z * z.y) + (z.z * x.x - z.x * x.z);
-    let third = x.dot(y.cross(z));
-    (first + second + 0.75 * third) / (1.0 + 0.5 * first + 0.25 * second + 0.125 * third)
+fn volumetric([a, b, c]: [Vec3; 3], [p, q, r]: [Vec3; 3]) -> (f64, f64, f64) {
+    // Products of three, so that no gradients are needed: all are times six volumes.
+    let (bc, qr) = (b.cross(c), q.cross(r));
+    let first = p.dot(bc) + q.dot(c.cross(a)) + r.dot(a.cross(b));
+    let second = a.dot(qr) + b.dot(r.cross(p)) + c.dot(p.cross(q));
+    let (whole, third) = (a.dot(bc), p.dot(qr));
+    (
+        first + second + 0.75 * third,
+        whole + 0.5 * first + 0.25 * second + 0.125 * third,
+        whole,
+    )
 }
 
 /// Volume after a strain over that before, exact for a homogeneous compression.
@@ -179,15 +208,21 @@ for_each_simd! {
         weights: &mut [Lane; 2],
     ) {
         let Weighed { sum, fill } = tile;
-        let mut shapes = Shapes::default();
-        shapes.find::<S>(nodes, places);
-        let (moved, _) = S::corners(nodes, moved);
+        let ((places, _), (moved, _)) = (S::corners(nodes, places), S::corners(nodes, moved));
         for l in 0..LANES {
-            let gradient = gradient(&shapes.gradients(l), all_corners(&moved, l));
-            let volumetric = volumetric(&gradient);
-            let (volume, whole) = (sum.volume[l], shapes.volume[l]);
-            let weight = smoothing::weight(fill.filled[l], volume, sum.closed[l], whole);
-            set(weights, l, [volumetric * weight, weight]);
+            let edges = |corners| {
+                let [first, a, b, c] = all_corners(corners, l);
+                [a - first, b - first, c - first]
+            };
+            let (strain, of, whole) = volumetric(edges(&places), edges(&moved));
+            let (volume, closed) = (sum.volume[l], sum.closed[l]);
+            let weight = smoothing::whole_weight(fill.filled[l], volume, whole * (1.0 / 6.0));
+            // One quotient in place of two.
+            let some = either(volume > 0.0, volume, 1.0);
+            let over = 1.0 / (of * some);
+            let share = either(closed < volume, closed * (of * over), 1.0);
+            let weight = weight * share;
+            set(weights, l, [strain * (some * over) * weight, weight]);
         }
     }
 }
@@ -260,4 +295,40 @@ fn gradients(sim: &mut Simulation) {
     });
     ledger.viscous_work(work[0]);
     ledger.stress_smoothing_work(work[1]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::tetrahedron_gradients;
+    use crate::random::Random;
+
+    #[test]
+    fn the_gradient_in_the_middle_is_what_its_definition_says() {
+        let mut random = Random::new(5);
+        for n in 0..200 {
+            let size = if n % 2 == 0 { 0.3 } else { 1e-6 };
+            let mut vector =
+                |a: f64| Vec3::from_array(std::array::from_fn(|_| random.within(-a, a)));
+            let corners = [
+                vector(0.1),
+                vector(0.1) + Vec3::X,
+                vector(0.1) + Vec3::Y,
+                vector(0.1) + Vec3::Z,
+            ];
+            let moved: [Vec3; 4] = std::array::from_fn(|_| vector(size));
+            let (gradients, volume) = tetrahedron_gradients(corners);
+            let gradient = gradient(&gradients, moved);
+            let (middle, determinant) = midpoint(&gradient);
+            let half = Mat3::IDENTITY + gradient * 0.5;
+            assert!((determinant / half.determinant() - 1.0).abs() < 1e-14);
+            let defined = gradient * half.inverse();
+            assert!((middle * (1.0 / determinant)).abs_diff_eq(defined, 1e-14 * size));
+            let edges = |x: [Vec3; 4]| [x[1] - x[0], x[2] - x[0], x[3] - x[0]];
+            let (trace, of, whole) = volumetric(edges(corners), edges(moved));
+            let defined = defined.x_axis.x + defined.y_axis.y + defined.z_axis.z;
+            assert!((trace / of - defined).abs() < 1e-14 * size);
+            assert!((whole / volume - 6.0).abs() < 1e-13);
+        }
+    }
 }

@@ -214,11 +214,12 @@ fn exchange(
         Range<usize>,
         &mut [Node],
     )| {
-        let (mut all, mut products) = ([0.0; 2], [Quad::default(); BLOCK]);
-        matrix.products(simd, slots.clone(), w, &mut products);
-        for ((node, own), product) in nodes.iter_mut().zip(&w[slots]).zip(&products) {
+        let (mut all, mut flows) = ([0.0; 2], [Quad::default(); BLOCK]);
+        matrix.flows(simd, slots.clone(), w, &mut flows);
+        for ((node, own), flow) in nodes.iter_mut().zip(&w[slots]).zip(&flows) {
             node.prefetch(0..2);
-            let works = work(node, own.vector(), product.vector());
+            let own = own.vector();
+            let works = work(node, own, own * node.mass - flow.vector());
             (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
         }
         all

@@ -3,8 +3,8 @@
 use super::{Arrays, Asked, Carried, Counted, Given, Sums, arrays, differs, each};
 use crate::Vec3;
 use crate::lanes::{
-    self, ByTile, Held, LANES, Lane, VoigtLanes, any, for_each_simd, get, held, load, load_one,
-    only, set,
+    self, AHEAD, ByTile, Held, LANES, Lane, VoigtLanes, any, for_each_simd, get, held, load,
+    load_one, only, prefetch, set,
 };
 use crate::material::STATE_SIZE;
 use crate::parallel::Split;
@@ -46,13 +46,22 @@ for_each_simd! {
         shapes: &Shapes,
         held: &Held,
     ) {
-        load(&mut side.position, &particles.position.components(), start);
-        load(&mut carried.velocity, &particles.velocity.components(), start);
-        load(&mut side.stress, &particles.stress.components(), start);
-        load(&mut side.state, &particles.state.components(), start);
+        let Particles { position, velocity, stress, state, .. } = particles;
+        let (position, velocity) = (position.components(), velocity.components());
+        let (stress, state) = (stress.components(), state.components());
+        let scalars = [&particles.mass[..], &particles.volume];
+        load(&mut side.position, &position, start);
+        load(&mut carried.velocity, &velocity, start);
+        load(&mut side.stress, &stress, start);
+        load(&mut side.state, &state, start);
+        prefetch(&position, start + AHEAD);
+        prefetch(&velocity, start + AHEAD);
+        prefetch(&stress, start + AHEAD);
+        prefetch(&state, start + AHEAD);
+        prefetch(&scalars, start + AHEAD);
         let (mut mass, mut volume) = (Lane::of(0.0), Lane::of(0.0));
-        load_one(&mut mass, &particles.mass, start);
-        load_one(&mut volume, &particles.volume, start);
+        load_one(&mut mass, scalars[0], start);
+        load_one(&mut volume, scalars[1], start);
         (carried.mass, side.volume) = (only(held, &mass), only(held, &volume));
         for l in 0..LANES {
             let n = shapes.at(l, Vec3::from_array(get(&side.position, l)));

@@ -32,7 +32,7 @@ pub struct Helper {
 }
 
 /// Neighbouring cells that tiles are made of.
-const WINDOW: usize = 128;
+const WINDOW: usize = 192;
 
 /// Most particles of a lane, unless their cell would take more than a tile.
 const DEEP: u32 = 8;

@@ -349,6 +349,12 @@ pub fn larger(a: f64, b: f64) -> f64 {
     either(b > a, b, a)
 }
 
+/// The smaller number, the same way.
+#[inline(always)]
+pub fn smaller(a: f64, b: f64) -> f64 {
+    either(b < a, b, a)
+}
+
 /// Whether all are the same. (Without leaving early, as in [`any`]: that keeps a loop scalar.)
 #[inline(always)]
 pub fn alike(bodies: &[u16]) -> bool {

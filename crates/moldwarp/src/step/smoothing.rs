@@ -26,7 +26,7 @@ use super::collect::{Portions, Shares};
 use super::corners::{NO_CORNERS, Quad, all_corners, load_nodes, sum_nodes};
 use super::shapes::Shapes;
 use super::{BLOCK, CellForce, Cells, Shared, strain, to_nodes};
-use crate::lanes::{LANES, Lane, either, get};
+use crate::lanes::{LANES, Lane, either, get, smaller};
 use crate::parallel::fold;
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
@@ -43,7 +43,7 @@ fn weight(filled: f64, volume: f64, closed: f64, whole: f64) -> f64 {
 /// The same as if none of it were separated.
 #[inline(always)]
 pub(super) fn whole_weight(filled: f64, volume: f64, whole: f64) -> f64 {
-    either(filled > 0.0, whole, volume.min(whole))
+    either(filled > 0.0, whole, smaller(volume, whole))
 }
 
 /// θ_n of each node.

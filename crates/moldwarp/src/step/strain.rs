@@ -115,15 +115,15 @@ for_each_simd! {
             let gradient = gradient(&shapes.gradients(l), corners);
             let (middle, determinant) = midpoint(&gradient);
             let trace = middle.x_axis.x + middle.y_axis.y + middle.z_axis.z;
-            // Growth is the first of these over the second one.
+            // Growth is what is `after` over what is `before`.
             let half = 0.125 * averaged[l];
-            let larger = either(smooth, 1.0 + half, determinant + 0.5 * trace);
-            let smaller = either(smooth, 1.0 - half, determinant - 0.5 * trace);
+            let after = either(smooth, 1.0 + half, determinant + 0.5 * trace);
+            let before = either(smooth, 1.0 - half, determinant - 0.5 * trace);
             let spin = half_spin(&middle);
             let square = determinant * determinant + spin.length_squared();
             // One quotient in place of three, which wait for each other.
-            let over_both = 1.0 / (determinant * smaller * square);
-            let over = over_both * (smaller * square);
+            let over_all = 1.0 / (determinant * before * square);
+            let over = over_all * (before * square);
             let midpoint = middle * over;
             // Up to round-off that of `volumetric`.
             let volumetric = trace * over;
@@ -131,11 +131,11 @@ for_each_simd! {
             let mut strain = tensor::strain(&midpoint);
             let change = (smoothed - volumetric) * (1.0 / 3.0);
             (0..3).for_each(|k| strain[k] += change);
-            let turn = spin_rotation(spin, determinant, 2.0 * over_both * (determinant * smaller));
+            let turn = spin_rotation(spin, determinant, 2.0 * over_all * (determinant * before));
             set(&mut d.gradient, l, gradient.to_cols_array());
             set(&mut d.origin, l, corners[0].to_array());
             (d.volumetric[l], d.left_out[l]) = (volumetric, volumetric - smoothed);
-            d.growth[l] = larger * over_both * (determinant * square);
+            d.growth[l] = after * over_all * (determinant * square);
             set(&mut d.strain, l, strain);
             set(&mut d.turn, l, turn.to_cols_array());
         }

@@ -18,7 +18,7 @@
 //! polynomials are added up in pairs.
 
 use super::Voigt;
-use crate::lanes::either;
+use crate::lanes::{either, smaller};
 
 /// A symmetric tensor by its principal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,7 +130,7 @@ fn decompose(s: &Voigt, b: &Voigt, norm_squared: f64) -> Principal {
     let determinant = b[0] * (b[1] * b[2] - b[4] * b[4]) - b[3] * (b[3] * b[2] - b[4] * b[5])
         + b[5] * (b[3] * b[4] - b[1] * b[5]);
     let half = (0.5 * determinant) * (unit * over);
-    let (root, over_distances) = lonely_root(half.abs().min(1.0), unit_squared * over);
+    let (root, over_distances) = lonely_root(smaller(half.abs(), 1.0), unit_squared * over);
     let alone = unit * root.copysign(half);
     let adjugate = adjugate(b, alone);
 

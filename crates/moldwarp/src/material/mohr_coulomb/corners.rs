@@ -11,7 +11,7 @@
 //! violates them least, and is in error by round-off too.
 
 use super::{MohrCoulombParameters, YieldState};
-use crate::lanes::{either, larger};
+use crate::lanes::{either, larger, smaller};
 use crate::material::LinearElastic;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -307,7 +307,10 @@ impl Corners {
     fn onto_apex(&self, t: &[f64; 3]) -> Found {
         let e = self.strain(t.map(|t| t - self.tip));
         let (up, down) = (self.flow_up, self.flow_down);
-        let violation = -(down * (e[0] + e[1]) + up * e[2]).min(down * e[0] + up * (e[1] + e[2]));
+        let violation = -smaller(
+            down * (e[0] + e[1]) + up * e[2],
+            down * e[0] + up * (e[1] + e[2]),
+        );
         self.cutoff_result([self.tip; 3], Corner::Apex, e[0] + e[1] + e[2], violation)
     }
 

@@ -277,8 +277,9 @@ impl MohrCoulomb {
         }
     }
 
-    /// The cone inscribed in the pyramid and the sphere-like bound on σ₁: no principal values. True only where the yield
-    /// function of these is negative with any round-off.
+    /// The cone inscribed in the pyramid and the sphere-like bound on σ₁: no principal values. Where it holds, the yield
+    /// function of principal values is negative in spite of round-off (but within a millionth of the tip): whoever asks that at
+    /// once finds the same.
     #[inline(always)]
     fn surely_elastic(&self, s: &Voigt) -> bool {
         let mean = tensor::trace(s) * (1.0 / 3.0);

@@ -111,35 +111,45 @@ pub(super) struct Counted<'a> {
 }
 
 for_each_simd! {
-    /// Adds slots to Σ m_p v_p N_i, Σ m_p N_i and Σ m_p N_i N_j, from nothing on if they are the first.
-    fn add_slots(
-        momentum: &mut Corners,
-        mass: &mut [Lane; 4],
-        pairs: &mut [Lane; 6],
-        slots: &[Carried],
-        first: bool,
-    ) {
-        let (mut sums, mut masses, mut products) =
-            (NO_CORNERS, [Lane::of(0.0); 4], [Lane::of(0.0); 6]);
+    /// Adds slots to Σ m_p v_p N_i and Σ m_p N_i, from nothing on if they are the first.
+    fn add_momenta(momentum: &mut Corners, mass: &mut [Lane; 4], slots: &[Carried], first: bool) {
+        let (mut sums, mut masses) = (NO_CORNERS, [Lane::of(0.0); 4]);
         if !first {
-            (sums, masses, products) = (*momentum, *mass, *pairs);
+            (sums, masses) = (*momentum, *mass);
         }
         for slot in slots {
             for l in 0..LANES {
-                let (n, v) = (get(&slot.shapes, l), Vec3::from_array(get(&slot.velocity, l)));
-                let shares = n.map(|n| n * slot.mass[l]);
+                let (m, v) = (slot.mass[l], Vec3::from_array(get(&slot.velocity, l)));
+                let shares = get(&slot.shapes, l).map(|n| n * m);
                 for i in 0..4 {
                     masses[i][l] += shares[i];
                     let momentum = corner(&sums, l, i) + v * shares[i];
                     set_corner(&mut sums, l, i, momentum);
                 }
+            }
+        }
+        (*momentum, *mass) = (sums, masses);
+    }
+}
+
+for_each_simd! {
+    /// The same for Σ m_p N_i N_j.
+    fn add_products(pairs: &mut [Lane; 6], slots: &[Carried], first: bool) {
+        let mut products = [Lane::of(0.0); 6];
+        if !first {
+            products = *pairs;
+        }
+        for slot in slots {
+            for l in 0..LANES {
+                let (n, m) = (get(&slot.shapes, l), slot.mass[l]);
+                let shares = n.map(|n| n * m);
                 for k in 0..6 {
                     let (i, j) = PAIRS[k];
                     products[k][l] += n[i] * shares[j];
                 }
             }
         }
-        (*momentum, *mass, *pairs) = (sums, masses, products);
+        *pairs = products;
     }
 }
 
@@ -309,13 +319,8 @@ impl Sums {
 
     fn add_up(&mut self, simd: Simd) {
         let slots = &self.slots[..self.filled];
-        let Sums {
-            momentum,
-            mass,
-            pairs,
-            ..
-        } = self;
-        add_slots(simd, momentum, mass, pairs, slots, self.empty);
+        add_momenta(simd, &mut self.momentum, &mut self.mass, slots, self.empty);
+        add_products(simd, &mut self.pairs, slots, self.empty);
         (self.filled, self.empty) = (0, false);
     }
 

@@ -109,14 +109,14 @@ impl Portions {
             self.nodes.add(nodes);
         }
         let all = usize::from(guests);
-        self.nodes.begin(MOST, all * mass.nodes());
+        self.nodes.begin(MOST, all * mass.diagonal.len());
         self.pairs.begin(1, all * mass.values.len());
     }
 
     /// There are guests, or more of them, and so many tiles. What has been given stays.
     pub fn add_guests(&mut self, tiles: usize, mass: &ConsistentMass) {
         if self.count == self.cut.own {
-            self.nodes.add(0..mass.nodes());
+            self.nodes.add(0..mass.diagonal.len());
             self.pairs.add(0..mass.values.len());
             self.nodes.resize(MOST);
             self.pairs.resize(1);
@@ -306,7 +306,7 @@ impl Share<'_, Quad, 1> {
 }
 
 impl Share<'_, Quad, 2> {
-    /// Gives each node of cells its vector and a number, and two that are the same for all of a cell's.
+    /// Gives each node of cells its vector and a number, and two that are the same for all of a cell's with one of its own.
     #[inline]
     pub fn give(
         &mut self,
@@ -315,9 +315,16 @@ impl Share<'_, Quad, 2> {
         vectors: &Corners,
         fourth: &[Lane; 4],
         alike: [&Lane; 2],
+        own: &[Lane; 4],
     ) {
         let (given, _) = self.given.as_chunks_mut();
-        add_both(simd, given, self.first, nodes, ((vectors, fourth), alike));
+        add_both(
+            simd,
+            given,
+            self.first,
+            nodes,
+            ((vectors, fourth), (alike, own)),
+        );
     }
 }
 
@@ -361,7 +368,7 @@ mod tests {
                 let mut vectors = NO_CORNERS;
                 (0..4).for_each(|i| vectors[3 * i] = one);
                 let alike = [&one, &one];
-                share.give(Simd::best(), nodes, &vectors, &own, alike);
+                share.give(Simd::best(), nodes, &vectors, &own, alike, &own);
             }
         };
         let items = (0..late, portions.shares::<2>());
@@ -384,7 +391,7 @@ mod tests {
                 for ((n, sum), alike) in range.zip(sums).zip(alike) {
                     let times = (n + 1).min(nodes - n).min(4) as f64;
                     assert_eq!(sum, Quad([times, 0.0, 0.0, times * n as f64]));
-                    assert_eq!(alike, Quad([times, times, 0.0, 0.0]));
+                    assert_eq!(alike, Quad([times, times, times * n as f64, 0.0]));
                 }
             }
         };

@@ -344,10 +344,10 @@ pub(super) fn add_alike(
     }
 }
 
-/// A vector and a number for each corner; two that are alike for all corners.
-type Both<'a> = ((&'a Corners, &'a [Lane; 4]), [&'a Lane; 2]);
+/// A vector and a number for each corner; two that are alike for all corners, and one for each.
+type Both<'a> = ((&'a Corners, &'a [Lane; 4]), ([&'a Lane; 2], &'a [Lane; 4]));
 
-/// Adds to numbers of nodes a vector and a number for each corner, and two that are alike for all corners.
+/// Adds to numbers of nodes a vector and a number for each corner, and two that are alike for all corners with one for each.
 pub(super) fn add_both(
     simd: Simd,
     to: &mut [[Quad; 2]],
@@ -366,7 +366,7 @@ pub(super) fn add_both(
         return unsafe { avx2::add_both(to, first, nodes, both) };
     }
     let _ = simd;
-    let ((vectors, fourth), [a, b]) = both;
+    let ((vectors, fourth), ([a, b], third)) = both;
     for (four, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
         for i in 0..4 {
             for (j, cell) in cells.iter().enumerate() {
@@ -374,7 +374,7 @@ pub(super) fn add_both(
                 let [x, y, z] = corner(vectors, l, i).to_array();
                 let to = &mut to[cell[i] as usize - first];
                 to[0] += Quad([x, y, z, fourth[i][l]]);
-                to[1] += Quad([a[l], b[l], 0.0, 0.0]);
+                to[1] += Quad([a[l], b[l], third[i][l], 0.0]);
             }
         }
     }
@@ -420,7 +420,7 @@ mod tests {
             add_corners(simd, &mut sums, 7, nodes, &vectors, &fourth);
             add_alike(simd, &mut sums, 7, nodes, [&lane(20), &lane(21)]);
             let mut both = vec![[Quad::default(); 2]; 23];
-            let alike = [&lane(22), &lane(23)];
+            let alike = ([&lane(22), &lane(23)], &fourth);
             add_both(simd, &mut both, 7, nodes, ((&vectors, &fourth), alike));
             sums.extend(both.as_flattened());
             sums

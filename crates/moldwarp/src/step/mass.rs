@@ -25,6 +25,8 @@ pub struct ConsistentMass {
     linked: Vec<Link>,
     /// M_ij of each pair, kg.
     pub values: Vec<f64>,
+    /// M_ii, kg.
+    pub diagonal: Vec<f64>,
     /// Of the search, kept so that no step allocates.
     room: Vec<u32>,
     found: Vec<u32>,
@@ -46,6 +48,7 @@ impl ConsistentMass {
             links,
             linked,
             values,
+            diagonal,
             room,
             found,
         } = self;
@@ -95,6 +98,8 @@ impl ConsistentMass {
         let count = first[nodes] as usize;
         values.clear();
         values.resize(count, 0.0);
+        diagonal.clear();
+        diagonal.resize(nodes, 0.0);
         link(first, |low, k| found[room[low] as usize + k], links, linked);
     }
 
@@ -103,11 +108,6 @@ impl ConsistentMass {
         for lane in same {
             self.pairs.push(self.pairs[lane]);
         }
-    }
-
-    /// Number of nodes.
-    pub fn nodes(&self) -> usize {
-        self.first.len().saturating_sub(1)
     }
 
     /// Room for so many more lanes.
@@ -138,8 +138,13 @@ impl ConsistentMass {
         });
     }
 
-    /// Σ_j M_ij (w_i − w_j) of each of these nodes: what m_i w_i is more than Σ_j M_ij w_j, as m_i = Σ_j M_ij. So M_ii is
-    /// not needed.
+    /// Σ_j M_ij w_j of each of these nodes.
+    #[inline]
+    pub fn products(&self, simd: Simd, nodes: Range<usize>, w: &[Quad], sums: &mut [Quad]) {
+        products(simd, self, nodes, w, sums);
+    }
+
+    /// Σ_j M_ij (w_i − w_j) of each of these nodes.
     #[inline]
     pub fn flows(&self, simd: Simd, nodes: Range<usize>, w: &[Quad], sums: &mut [Quad]) {
         flows(simd, self, nodes, w, sums);
@@ -148,6 +153,21 @@ impl ConsistentMass {
     #[inline(always)]
     fn links(&self, node: usize) -> &[Link] {
         &self.linked[self.links[node] as usize..self.links[node + 1] as usize]
+    }
+}
+
+for_each_simd! {
+    fn products(matrix: &ConsistentMass, nodes: Range<usize>, w: &[Quad], sums: &mut [Quad]) {
+        for (node, to) in nodes.zip(sums) {
+            let mut sum = w[node].0.map(|x| x * matrix.diagonal[node]);
+            for link in matrix.links(node) {
+                let (m, w) = (matrix.values[link.pair as usize], w[link.node as usize].0);
+                for k in 0..4 {
+                    sum[k] += m * w[k];
+                }
+            }
+            *to = Quad(sum);
+        }
     }
 }
 
@@ -221,6 +241,7 @@ mod tests {
                     f64::from(10 * cell[i].min(cell[j]) + cell[i].max(cell[j]));
             }
         }
+        mass.diagonal = (0..8).map(|n| f64::from(100 * (n + 1))).collect();
         let w: Vec<Quad> = (0..8)
             .map(|n| Quad([1.0, f64::from(n), 0.0, 0.0]))
             .collect();
@@ -237,6 +258,8 @@ mod tests {
         let moment: f64 = others.iter().map(|(n, m)| f64::from(*n) * m).sum();
         for simd in Simd::NAMES.iter().filter_map(|name| Simd::named(name)) {
             let mut sums = [Quad::default(); 2];
+            mass.products(simd, 3..5, &w, &mut sums);
+            assert_eq!(sums[1].0[..2], [sum + 500.0, moment + 2000.0]);
             mass.flows(simd, 3..5, &w, &mut sums);
             assert_eq!(sums[1].0[..2], [0.0, 4.0 * sum - moment]);
         }

@@ -44,8 +44,9 @@ pub(super) struct Sums {
     momentum: Corners,
     /// Σ m_p N_i.
     mass: [Lane; 4],
-    /// Σ m_p N_i N_j of each pair of nodes.
+    /// Σ m_p N_i N_j of each pair of nodes, and of each node with itself.
     pairs: [Lane; 6],
+    squares: [Lane; 4],
 }
 
 impl Default for Sums {
@@ -62,6 +63,7 @@ impl Default for Sums {
             momentum: NO_CORNERS,
             mass: [Lane::of(0.0); 4],
             pairs: [Lane::of(0.0); 6],
+            squares: [Lane::of(0.0); 4],
         }
     }
 }
@@ -133,23 +135,26 @@ for_each_simd! {
 }
 
 for_each_simd! {
-    /// The same for Σ m_p N_i N_j.
-    fn add_products(pairs: &mut [Lane; 6], slots: &[Carried], first: bool) {
-        let mut products = [Lane::of(0.0); 6];
+    /// The same for Σ m_p N_i N_j and Σ m_p N_i².
+    fn add_products(pairs: &mut [Lane; 6], squares: &mut [Lane; 4], slots: &[Carried], first: bool) {
+        let (mut products, mut own) = ([Lane::of(0.0); 6], [Lane::of(0.0); 4]);
         if !first {
-            products = *pairs;
+            (products, own) = (*pairs, *squares);
         }
         for slot in slots {
             for l in 0..LANES {
                 let (n, m) = (get(&slot.shapes, l), slot.mass[l]);
                 let shares = n.map(|n| n * m);
+                for i in 0..4 {
+                    own[i][l] += n[i] * shares[i];
+                }
                 for k in 0..6 {
                     let (i, j) = PAIRS[k];
                     products[k][l] += n[i] * shares[j];
                 }
             }
         }
-        *pairs = products;
+        (*pairs, *squares) = (products, own);
     }
 }
 
@@ -320,11 +325,11 @@ impl Sums {
     fn add_up(&mut self, simd: Simd) {
         let slots = &self.slots[..self.filled];
         add_momenta(simd, &mut self.momentum, &mut self.mass, slots, self.empty);
-        add_products(simd, &mut self.pairs, slots, self.empty);
+        add_products(simd, &mut self.pairs, &mut self.squares, slots, self.empty);
         (self.filled, self.empty) = (0, false);
     }
 
-    /// Gives nodes Σ m_p v_p N_i, Σ m_p N_i and of the whole cell Σ V_p without what has opened and Σ m_p,
+    /// Gives nodes Σ m_p v_p N_i, Σ m_p N_i, Σ m_p N_i² and of the whole cell Σ V_p without what has opened and Σ m_p,
     /// pairs of nodes Σ m_p N_i N_j, and puts together what lanes of the same cell have.
     #[inline]
     pub fn leave(
@@ -344,8 +349,8 @@ impl Sums {
             (sum.solid, sum.closed) = (sum.volume, sum.volume);
         }
         whole_masses(simd, self, sum);
-        let alike = [&sum.solid, &sum.mass];
-        to_nodes.give(simd, nodes, &self.momentum, &self.mass, alike);
+        let (alike, squares) = ([&sum.solid, &sum.mass], &self.squares);
+        to_nodes.give(simd, nodes, &self.momentum, &self.mass, alike, squares);
         to_pairs.give_pairs(pairs, &self.pairs);
         tile.gather(sum.lanes());
         if let Some(medium) = &mut records.medium {

@@ -51,24 +51,35 @@ fn sum_nodes(sim: &mut Simulation) {
     let (active, portions, mesh) = (&*active, &cells.portions, &plan.mesh);
     let (walls, contacts) = (&*walls, &*contacts);
     let grid_nodes = walls.count(mesh) as u32;
-    let numbers = (&mut shared.filling[..], &mut shared.places[..]);
+    let numbers = (
+        &mut shared.filling[..],
+        &mut shared.places[..],
+        &mut cells.mass.diagonal[..],
+    );
     let items = (0..nodes.len(), &mut nodes[..], numbers);
-    type Numbers<'a> = (&'a mut [f64], &'a mut [Quad]);
-    fold(items, BLOCK, &|(slots, nodes, (fillings, places)): (
+    type Numbers<'a> = (&'a mut [f64], &'a mut [Quad], &'a mut [f64]);
+    fold(items, BLOCK, &|(
+        slots,
+        nodes,
+        (fillings, places, squares),
+    ): (
         Range<usize>,
         &mut [Node],
         Numbers,
     )| {
         let (mut first, mut last) = ([Quad::default(); BLOCK], [Quad::default(); BLOCK]);
         (portions.nodes).sums(slots.clone(), &mut [&mut first, &mut last]);
-        let numbers = fillings.iter_mut().zip(places);
+        let numbers = fillings.iter_mut().zip(places).zip(squares);
         let sums = first.iter().zip(&last);
-        for (((slot, node), sums), (filling, place)) in slots.zip(nodes).zip(sums).zip(numbers) {
+        for (((slot, node), sums), ((filling, place), own)) in
+            slots.zip(nodes).zip(sums).zip(numbers)
+        {
             node.prefetch(0..1);
             if let Some(&later) = active.nodes.get(slot + NUMBERS_AHEAD) {
                 prefetch_number(&mesh.node_volumes, later as usize);
             }
-            let (&Quad([x, y, z, mass]), &Quad([volume, all_mass, ..])) = sums;
+            let (&Quad([x, y, z, mass]), &Quad([volume, all_mass, square, _])) = sums;
+            *own = square;
             let momentum = Vec3::new(x, y, z);
             let grid = active.keys[slot] % grid_nodes;
             let mut whole = walls.volume(mesh, grid);

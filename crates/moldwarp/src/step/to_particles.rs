@@ -214,12 +214,11 @@ fn exchange(
         Range<usize>,
         &mut [Node],
     )| {
-        let (mut all, mut flows) = ([0.0; 2], [Quad::default(); BLOCK]);
-        matrix.flows(simd, slots.clone(), w, &mut flows);
-        for ((node, own), flow) in nodes.iter_mut().zip(&w[slots]).zip(&flows) {
+        let (mut all, mut products) = ([0.0; 2], [Quad::default(); BLOCK]);
+        matrix.products(simd, slots.clone(), w, &mut products);
+        for ((node, own), product) in nodes.iter_mut().zip(&w[slots]).zip(&products) {
             node.prefetch(0..2);
-            let own = own.vector();
-            let works = work(node, own, own * node.mass - flow.vector());
+            let works = work(node, own.vector(), product.vector());
             (all[0], all[1]) = (all[0] + works[0], all[1] + works[1]);
         }
         all

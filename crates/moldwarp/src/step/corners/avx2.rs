@@ -70,7 +70,8 @@ pub fn add_corners(
     assert!(nodes.are_among(first, to.len()));
     for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
         for i in 0..4 {
-            let rows = rows_of_corner((vectors, fourth), k, i);
+            let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c], 4 * k));
+            let rows = transpose(x, y, z, four(&fourth[i], 4 * k));
             for j in 0..4 {
                 // SAFETY: all nodes are there.
                 unsafe { add(to, cells[j][i] as usize - first, rows[j]) };
@@ -82,8 +83,9 @@ pub fn add_corners(
 #[target_feature(enable = "avx2")]
 pub fn add_alike(to: &mut [Quad], first: usize, nodes: TileNodes, [a, b]: [&Lane; 2]) {
     assert!(nodes.are_among(first, to.len()));
+    let zero = _mm256_setzero_pd();
     for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
-        let rows = rows_alike([a, b], k);
+        let rows = transpose(four(a, 4 * k), four(b, 4 * k), zero, zero);
         for i in 0..4 {
             for j in 0..4 {
                 // SAFETY: all nodes are there.
@@ -93,34 +95,28 @@ pub fn add_alike(to: &mut [Quad], first: usize, nodes: TileNodes, [a, b]: [&Lane
     }
 }
 
-/// Quads of corner `i` of the `k`-th four cells.
+/// Both quads of corner `i` of the `k`-th four cells.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub fn rows_of_corner(
-    (vectors, fourth): (&Corners, &[Lane; 4]),
+pub fn rows_of_both(
+    ((vectors, fourth), ([a, b], third)): Both,
     k: usize,
     i: usize,
-) -> [__m256d; 4] {
-    let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c], 4 * k));
-    transpose(x, y, z, four(&fourth[i], 4 * k))
-}
-
-/// Quads of all corners of the `k`-th four cells.
-#[inline]
-#[target_feature(enable = "avx2")]
-pub fn rows_alike([a, b]: [&Lane; 2], k: usize) -> [__m256d; 4] {
-    let zero = _mm256_setzero_pd();
-    transpose(four(a, 4 * k), four(b, 4 * k), zero, zero)
+) -> ([__m256d; 4], [__m256d; 4]) {
+    let four = |lane: &Lane| four(lane, 4 * k);
+    let [x, y, z] = [0, 1, 2].map(|c| four(&vectors[3 * i + c]));
+    let own = transpose(x, y, z, four(&fourth[i]));
+    let alike = transpose(four(a), four(b), four(&third[i]), _mm256_setzero_pd());
+    (own, alike)
 }
 
 #[target_feature(enable = "avx2")]
-pub fn add_both(to: &mut [[Quad; 2]], first: usize, nodes: TileNodes, (own, alike): Both) {
+pub fn add_both(to: &mut [[Quad; 2]], first: usize, nodes: TileNodes, both: Both) {
     assert!(nodes.are_among(first, to.len()));
     let to = to.as_flattened_mut();
     for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
-        let alike = rows_alike(alike, k);
         for i in 0..4 {
-            let own = rows_of_corner(own, k, i);
+            let (own, alike) = rows_of_both(both, k, i);
             for j in 0..4 {
                 let at = 2 * (cells[j][i] as usize - first);
                 // SAFETY: all nodes are there, each with two.

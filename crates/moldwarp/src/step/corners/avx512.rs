@@ -1,6 +1,6 @@
 //! With AVX-512: eight cells at a time.
 
-use super::avx2::{rows_alike, rows_of_corner};
+use super::avx2::rows_of_both;
 use super::{Both, LANES, Lane, Quad, TileNodes};
 use std::arch::x86_64::*;
 
@@ -53,12 +53,11 @@ pub unsafe fn store(to: *mut f64, lane: Lane, count: usize) {
 
 /// With both quads of a node at a time.
 #[target_feature(enable = "avx2,avx512f")]
-pub fn add_both(to: &mut [[Quad; 2]], first: usize, nodes: TileNodes, (own, alike): Both) {
+pub fn add_both(to: &mut [[Quad; 2]], first: usize, nodes: TileNodes, both: Both) {
     assert!(nodes.are_among(first, to.len()));
     for (k, cells) in nodes.as_chunks::<4>().0.iter().enumerate() {
-        let alike = rows_alike(alike, k);
         for i in 0..4 {
-            let own = rows_of_corner(own, k, i);
+            let (own, alike) = rows_of_both(both, k, i);
             for j in 0..4 {
                 let more = _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(own[j]), alike[j]);
                 // SAFETY: all nodes are there, each with eight numbers.

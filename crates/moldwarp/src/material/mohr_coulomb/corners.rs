@@ -13,6 +13,7 @@
 use super::{MohrCoulombParameters, YieldState};
 use crate::lanes::{either, larger, smaller};
 use crate::material::LinearElastic;
+use std::fmt;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -83,7 +84,7 @@ impl Found {
 
 /// Constants of the surface and of the flow. What the return needs is computed once: what is the same for all particles
 /// would still be computed for each few.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct Corners {
     /// sin φ, 1 + sin φ, 1 − sin φ (without cancellation), 2 c cos φ.
     sin: f64,
@@ -114,6 +115,31 @@ pub(super) struct Corners {
     plane: f64,
     upper: f64,
     lower: f64,
+}
+
+/// A scene's fingerprint is made of this. So what only saves arithmetic is left out: a scene stays the same without it.
+impl fmt::Debug for Corners {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("Corners")
+            .field("sin", &self.sin)
+            .field("up", &self.up)
+            .field("down", &self.down)
+            .field("half_strength", &self.half_strength())
+            .field("flow_up", &self.flow_up)
+            .field("flow_down", &self.flow_down)
+            .field("tip", &self.tip)
+            .field("has_cutoff", &self.has_cutoff)
+            .field("foot", &self.foot)
+            .field("lame", &self.lame)
+            .field("shear", &self.shear)
+            .field("poisson", &self.poisson)
+            .field("poisson_share", &self.poisson_share)
+            .field("relief", &self.relief)
+            .field("plane", &self.plane)
+            .field("upper", &self.upper)
+            .field("lower", &self.lower)
+            .finish()
+    }
 }
 
 impl Corners {

@@ -64,9 +64,10 @@ pub(super) use particle::{OPENING, STATE_FIELDS, is_separated, solid_share};
 use super::LinearElastic;
 use crate::tensor::{self, Voigt};
 use corners::Corners;
+use std::fmt;
 
 /// The model with the constants that its return needs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct MohrCoulomb {
     elastic: LinearElastic,
     parameters: MohrCoulombParameters,
@@ -78,10 +79,27 @@ pub struct MohrCoulomb {
     /// 1/(2G) and 1/(3K), 1/Pa.
     over_shear: f64,
     over_bulk: f64,
-    /// 1 + sin²φ/3, and little more: √ of it, the cone within the pyramid.
+    /// √(1 + sin²φ/3): the cone within the pyramid; and its square with little more.
+    cone: f64,
     cone_squared: f64,
     /// Stresses below this count as none, Pa.
     negligible: f64,
+}
+
+/// A scene's fingerprint is made of this. So what only saves arithmetic is left out: a scene stays the same without it.
+impl fmt::Debug for MohrCoulomb {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("MohrCoulomb")
+            .field("elastic", &self.elastic)
+            .field("parameters", &self.parameters)
+            .field("corners", &self.corners)
+            .field("lame", &self.lame)
+            .field("shear_modulus", &self.shear_modulus)
+            .field("bulk_modulus", &self.bulk_modulus)
+            .field("cone", &self.cone)
+            .field("negligible", &self.negligible)
+            .finish()
+    }
 }
 
 /// What a stress point did in a step.
@@ -201,6 +219,7 @@ impl MohrCoulomb {
             bulk_modulus,
             over_shear: 0.5 / shear_modulus,
             over_bulk: 1.0 / (3.0 * bulk_modulus),
+            cone: (1.0 + sin * sin / 3.0).sqrt(),
             cone_squared: (1.0 + sin * sin / 3.0) * (1.0 + 1e-9),
             negligible: 1e-12 * (elastic.young_modulus + corners.tip()),
         })

@@ -8,14 +8,15 @@ use crate::boundary::{
 use crate::contact::{Contacts, Fields, is_rigid};
 use crate::lanes::Simd;
 use crate::measure::{Ledger, Part, Probes, Profile, Scale, Watch};
-use crate::mesh::{Driven, Follower, Walls};
+use crate::mesh::{Driven, Follower, NONE, Walls};
 use crate::parallel;
 use crate::particles::initial_stress::{self, Ground};
 use crate::particles::{Order, Particles, Seed, SeedingError};
 use crate::plan::{LoadKind, Plan, Quantity, Target};
 use crate::stages::moduli;
 use crate::step::{
-    Active, Answers, Cells, Grid, Guests, Node, Pending, Reference, Shared, TimeStepError,
+    Active, Answers, Cells, Grid, Guests, Node, Pending, Reference, Remembered, Shared,
+    TimeStepError,
 };
 use crate::stop::{SetupError, Stop};
 use crate::switches::Switches;
@@ -84,9 +85,8 @@ pub struct Simulation {
     pub(crate) answers: Answers,
     pub(crate) simd: Simd,
     pub(crate) profile: Profile,
-    /// Velocities and displacements of nodes in the last drift before they were numbered anew, and their keys, kept so
-    /// that no step allocates.
-    pub(crate) spare_drifts: Vec<[Vec3; 2]>,
+    /// What was to be remembered of nodes before they were numbered anew, and their keys, kept so that no step allocates.
+    pub(crate) remembered: Vec<Remembered>,
     pub(crate) spare_numbers: Vec<u32>,
 }
 
@@ -148,7 +148,7 @@ impl Simulation {
             answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),
-            spare_drifts: Vec::new(),
+            remembered: Vec::new(),
             spare_numbers: Vec::new(),
         };
         bodies::check_probes(&simulation)?;
@@ -225,26 +225,13 @@ impl Simulation {
         if self.finished() {
             return Ok(());
         }
-        let dt = self.clock.next;
         // A law of a program is asked by the thread that makes the step: only that may be heard, or interrupted.
-        match (self.plan.materials.iter()).any(|m| m.model.external().is_some()) {
-            true => self.drift(dt)?,
-            false => parallel::inside(|| self.drift(dt))?,
-        }
-        self.clock.steps += 1;
-        self.clock.stage_steps += 1;
-        self.clock.time += dt;
-        self.clock.stage_time += dt;
-        self.clock.dt = dt;
-        let at_rest = self.at_rest();
-        let remaining = self.remaining();
-        if remaining > 0.0 && !at_rest {
-            self.clock.next = parallel::inside(|| self.kick(0.5 * dt, remaining))?;
+        let is_over = match (self.plan.materials.iter()).any(|m| m.model.external().is_some()) {
+            true => self.drift_and_kick()?,
+            false => parallel::inside(|| self.drift_and_kick())?,
+        };
+        if !is_over {
             return Ok(());
-        }
-        parallel::inside(|| self.kick(0.5 * dt, 0.0))?;
-        if !at_rest {
-            self.has_to_be_at_rest()?;
         }
         self.settle();
         self.profile.lap(Part::Between);
@@ -258,12 +245,32 @@ impl Simulation {
         }
     }
 
+    /// Returns whether the stage is over.
+    fn drift_and_kick(&mut self) -> Result<bool, Stop> {
+        let dt = self.clock.next;
+        self.drift(dt)?;
+        self.clock.steps += 1;
+        self.clock.stage_steps += 1;
+        self.clock.time += dt;
+        self.clock.stage_time += dt;
+        self.clock.dt = dt;
+        let at_rest = self.at_rest();
+        let remaining = self.remaining();
+        let is_over = remaining <= 0.0 || at_rest;
+        let limit = if is_over { 0.0 } else { remaining };
+        let next = parallel::inside(|| self.kick(0.5 * dt, limit))?;
+        if !is_over {
+            self.clock.next = next;
+        } else if !at_rest {
+            self.has_to_be_at_rest()?;
+        }
+        Ok(is_over)
+    }
+
     /// Brings particles into the order of their elements and numbers the active cells and nodes anew.
     pub(crate) fn reorder(&mut self) {
-        // The last drift of nodes that stay active is still needed for its work.
-        self.spare_drifts.clear();
-        let drifts = self.nodes.iter().map(|n| [n.grid_velocity, n.moved]);
-        self.spare_drifts.extend(drifts);
+        self.remembered.clear();
+        (self.remembered).extend(self.shared.remember(&self.nodes));
         std::mem::swap(&mut self.active.keys, &mut self.spare_numbers);
         let mesh = &self.plan.mesh;
         let away = (self.guests).begin_to_leave(&mut self.particles, &mut self.order.filed);
@@ -302,13 +309,14 @@ impl Simulation {
                 cells.renew(active, guests);
                 nodes.clear();
                 nodes.resize(active.nodes.len(), Node::default());
-                for (&drift, &key) in self.spare_drifts.iter().zip(&self.spare_numbers) {
-                    let slot = active.slot_of_key.get(key as usize);
-                    if let Some(new) = slot.and_then(|&s| nodes.get_mut(s as usize)) {
-                        [new.grid_velocity, new.moved] = drift;
+                shared.renew(nodes);
+                for (own, &key) in self.remembered.iter().zip(&self.spare_numbers) {
+                    if let Some(&slot) = active.slot_of_key.get(key as usize)
+                        && slot != NONE
+                    {
+                        shared.recall(nodes, slot as usize, own);
                     }
                 }
-                shared.renew(nodes);
                 shared.place(active, &plan.mesh);
             },
         );

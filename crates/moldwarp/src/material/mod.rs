@@ -10,7 +10,7 @@ pub use mohr_coulomb::{
     MohrCoulomb, MohrCoulombParameters, MohrCoulombState, ParameterError, PlasticStep, YieldState,
 };
 
-use crate::lanes::{Held, LANES, Lane, Simd, VoigtLanes, get, set};
+use crate::lanes::{Held, LANES, Lane, Simd, VoigtLanes, either, get, set};
 use crate::tensor::Voigt;
 
 /// Most state variables that a model may keep per particle.
@@ -198,6 +198,26 @@ impl Material {
         match self {
             Material::LinearElastic(_) | Material::Rigid | Material::External(_) => false,
             Material::MohrCoulomb(_) => mohr_coulomb::is_separated(stress, state),
+        }
+    }
+
+    /// Of particles side by side what [`Material::solid_share`] says, and 1 if they are not separated, else 0; both are 1 before.
+    #[inline(always)]
+    pub(crate) fn find_closed(
+        &self,
+        stress: &VoigtLanes,
+        state: &[Lane; STATE_SIZE],
+        solid: &mut Lane,
+        closed: &mut Lane,
+    ) {
+        if let Material::MohrCoulomb(_) = self {
+            for l in 0..LANES {
+                solid[l] = mohr_coulomb::solid_share(&get(state, l));
+            }
+            for l in 0..LANES {
+                let separated = mohr_coulomb::is_separated(&get(stress, l), &get(state, l));
+                closed[l] = either(separated, 0.0, 1.0);
+            }
         }
     }
 

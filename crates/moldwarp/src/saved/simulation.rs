@@ -72,7 +72,7 @@ impl Simulation {
             answers: _,
             simd: _,
             profile: _,
-            spare_drifts: _,
+            remembered: _,
             spare_numbers: _,
             // Particles have received all, and the next drift adds up their energy.
             pending,
@@ -171,7 +171,7 @@ impl Simulation {
             answers: Answers::default(),
             simd: Simd::default(),
             profile: Profile::default(),
-            spare_drifts: Vec::new(),
+            remembered: Vec::new(),
             spare_numbers: Vec::new(),
             plan,
         };

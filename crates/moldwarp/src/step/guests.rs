@@ -169,6 +169,16 @@ impl Guests {
         own / FEW_TILES + particles / (4 * FEW) + 2
     }
 
+    /// Whether there may be too many guests of so many particles, if twice as many come as last time.
+    fn may_be_too_many(&self, particles: usize) -> bool {
+        let last = match self.ends[..] {
+            [] => 0,
+            [last] => last,
+            [.., before, last] => last - before,
+        };
+        self.from.len() + 2 * last as usize > particles / FEW
+    }
+
     /// Sorts out where those are that have left their elements. False if there would be too many guests.
     fn find(&mut self, particles: &Particles) -> bool {
         let own = particles.len() - self.twice();
@@ -378,6 +388,14 @@ impl Simulation {
         (self.guests).leave(&mut self.particles, &mut self.order.filed);
     }
 
+    /// Whether particles should be put in order, as the next guests may be too many. So it is done at a time when it costs
+    /// least, and not when these have come.
+    pub(super) fn guests_are_many(&self) -> bool {
+        let (tiles, own) = (self.active.tiles.len(), self.active.own_tiles());
+        let particles = self.particles.len() - self.guests.twice();
+        tiles - own > own / FEW_TILES || self.guests.may_be_too_many(particles)
+    }
+
     /// Makes those that have crossed guests. False if there would be too many, or one is where there is no cell.
     pub(super) fn regroup(&mut self) -> bool {
         let Simulation {
@@ -388,8 +406,8 @@ impl Simulation {
             guests,
             ..
         } = self;
-        let (tiles, own) = (active.tiles.len(), active.own_tiles());
-        if tiles - own > own / FEW_TILES || !guests.find(particles) {
+        let tiles = active.tiles.len();
+        if !guests.find(particles) {
             return false;
         }
         if !guests.lay_out(active, particles.len() - guests.twice()) {

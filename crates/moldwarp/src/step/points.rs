@@ -143,12 +143,13 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                 let whose = stress.whose.of(bodies);
                 let mut done = Done::Nothing;
                 if let Some(model) = whose.model.filter(|_| !in_parts()) {
-                    let plain = stays && records.medium.is_none() && !sums.has_opened();
+                    let plain = stays && records.medium.is_none();
                     let mut advance = |open| {
                         let advance = match open {
                             false => usual::advance::<false>,
                             true => usual::advance::<true>,
                         };
+                        let (carried, has_opened) = sums.next_and_opened();
                         advance(
                             simd,
                             &mut arrays,
@@ -166,7 +167,8 @@ pub(super) fn run(sim: &mut Simulation, stays: bool) -> (bool, Crossing) {
                             &mut motion,
                             &mut stress.booked,
                             stirred,
-                            sums.next(),
+                            carried,
+                            has_opened,
                             plain.then_some(&mut *records.sum),
                         )
                     };

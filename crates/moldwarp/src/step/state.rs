@@ -8,6 +8,7 @@ use crate::Vec3;
 use crate::lanes::{LANES, Lane, VoigtLanes, any, lane_of, prefetch_lines, prefetch_record};
 use crate::mesh::Mesh;
 use crate::parallel::fold;
+use std::iter::repeat;
 use std::ops::Range;
 
 /// A node that particles touch. Forces in N, work in J. (Passes over nodes wait for memory: what is asked of all nodes comes
@@ -74,12 +75,48 @@ pub struct Shared {
     pub grid: Vec<Quad>,
 }
 
+/// What is still needed of a node's last kick and drift when nodes are numbered anew.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Remembered {
+    grid_velocity: Vec3,
+    moved: Quad,
+    received: Quad,
+    grid: Quad,
+}
+
 impl Shared {
+    /// What is still needed of these nodes, one after another.
+    pub(crate) fn remember(&self, nodes: &[Node]) -> impl Iterator<Item = Remembered> {
+        let relaxation = self.grid.iter().copied().chain(repeat(Quad::default()));
+        let quads = self.moved.iter().zip(&self.received).zip(relaxation);
+        nodes
+            .iter()
+            .zip(quads)
+            .map(|(node, ((&moved, &received), grid))| Remembered {
+                grid_velocity: node.grid_velocity,
+                moved,
+                received,
+                grid,
+            })
+    }
+
+    /// Gives it to the node that has this number now.
+    pub(crate) fn recall(&mut self, nodes: &mut [Node], slot: usize, own: &Remembered) {
+        (nodes[slot].grid_velocity, nodes[slot].moved) = (own.grid_velocity, own.moved.vector());
+        (self.moved[slot], self.received[slot]) = (own.moved, own.received);
+        if let Some(grid) = self.grid.get_mut(slot) {
+            *grid = own.grid;
+        }
+    }
+
     /// Of these nodes; what cells still need of the last drift is kept.
     pub(crate) fn renew(&mut self, nodes: &[Node]) {
         self.filling.resize(nodes.len(), 0.0);
         for vectors in [&mut self.given, &mut self.received] {
             vectors.resize(nodes.len(), Quad::default());
+        }
+        if !self.grid.is_empty() {
+            self.grid.resize(nodes.len(), Quad::default());
         }
         self.moved.clear();
         self.moved
@@ -285,6 +322,7 @@ impl Cells {
         room_for(&mut self.fills, room);
         room_for(&mut self.stirred, room);
         self.stirred.clear();
+        self.sums.clear();
         self.resize(active);
         self.mass.renew(&active.cell_nodes, active.nodes.len());
         (self.portions).renew(&active.cell_nodes, &self.mass, guests > 0);

@@ -4,11 +4,12 @@ use super::collect::Shares;
 use super::corners::{Corners, NO_CORNERS, Quad, TileNodes, all_corners, load_nodes};
 use super::shapes::Shapes;
 use super::state::are_void;
-use super::{CellFill, CellForce, CellSums, Cells, Shared, smoothing};
+use super::{CellFill, CellForce, CellSums, Cells, Shared, TILES, smoothing};
 use crate::lanes::{
     self, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, either, for_each_simd, get,
     prefetch_record, set,
 };
+use crate::parallel::fold;
 use crate::plan::Smoothing;
 use crate::simulation::Simulation;
 use crate::tensor::{self, Voigt, half_spin, spin_rotation};
@@ -190,6 +191,43 @@ for_each_simd! {
             work[l] += 0.5 * tensor::dot(&get(&sum.stress, l), &strain);
         }
     }
+}
+
+for_each_simd! {
+    /// The same, from what nodes have moved by.
+    pub(super) fn half_work(shapes: &Shapes, moved: &Corners, sum: &CellSums, work: &mut Lane) {
+        for l in 0..LANES {
+            let gradient = gradient(&shapes.gradients(l), all_corners(moved, l));
+            let strain = tensor::strain(&gradient);
+            work[l] += 0.5 * tensor::dot(&get(&sum.stress, l), &strain);
+        }
+    }
+}
+
+/// Books the half of the work that the pass over particles ([`own_work`]) does not find any more when cells are numbered anew
+/// before.
+pub(super) fn begin_work(sim: &mut Simulation) {
+    let Simulation {
+        active,
+        shared,
+        cells,
+        ledger,
+        simd,
+        ..
+    } = sim;
+    let (active, shared, simd) = (&*active, &*shared, *simd);
+    let sums = &cells.sums[..active.own_tiles()];
+    let work = fold(0..sums.len(), TILES, &|tiles: Range<usize>| {
+        let (mut moved, mut shapes, mut work) = (NO_CORNERS, Shapes::default(), Lane::of(0.0));
+        for tile in tiles {
+            let nodes = active.tile_nodes(tile);
+            shapes.enter(simd, nodes, &shared.places);
+            load_nodes(simd, &mut moved, nodes, &shared.moved);
+            half_work(simd, &shapes, &moved, &sums[tile], &mut work);
+        }
+        lanes::sum(&work)
+    });
+    ledger.grid_stress_work(work);
 }
 
 /// Records of a tile that tell how much its cells weigh in the means of their nodes.

@@ -14,8 +14,7 @@ use super::stress::Whose;
 use super::{CellMedium, CellSums, Cells, ConsistentMass, Reference};
 use crate::Vec3;
 use crate::lanes::{
-    Contents, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, either, for_each_simd, get,
-    prefetch_lines, set,
+    Contents, LANES, Lane, RECORDS_AHEAD, Simd, VoigtLanes, for_each_simd, get, prefetch_lines, set,
 };
 use crate::material::{Material, STATE_SIZE};
 use crate::plan::Plan;
@@ -179,10 +178,16 @@ for_each_simd! {
 for_each_simd! {
     /// Adds what of it has not opened and what is not separated.
     fn add_closed(sums: &Sums, points: &Counted, sum: &mut CellSums) {
-        for l in 0..LANES {
-            sum.solid[l] += points.volume[l] * sums.shares[0][l];
-            sum.closed[l] += points.volume[l] * sums.shares[1][l];
-        }
+        add_to_closed(sums.shares.each_ref(), points.volume, sum);
+    }
+}
+
+/// Adds what of particles has not opened and what is not separated, in a kernel.
+#[inline(always)]
+pub(super) fn add_to_closed(shares: [&Lane; 2], volume: &Lane, sum: &mut CellSums) {
+    for l in 0..LANES {
+        sum.solid[l] += volume[l] * shares[0][l];
+        sum.closed[l] += volume[l] * shares[1][l];
     }
 }
 
@@ -195,13 +200,8 @@ for_each_simd! {
         stress: &VoigtLanes,
         state: &[Lane; STATE_SIZE],
     ) {
-        let (mut shares, mut all) = (Lane::of(0.0), Lane::of(0.0));
-        for l in 0..LANES {
-            shares[l] = model.solid_share(&get(state, l));
-        }
-        for l in 0..LANES {
-            all[l] = either(model.is_separated(&get(stress, l), &get(state, l)), 0.0, 1.0);
-        }
+        let (mut shares, mut all) = (Lane::of(1.0), Lane::of(1.0));
+        model.find_closed(stress, state, &mut shares, &mut all);
         (*solid, *closed) = (shares, all);
     }
 }
@@ -260,16 +260,16 @@ impl Sums {
         (self.empty, self.opened) = (true, false);
     }
 
-    /// Whether the shares of what has not opened have to be summed.
-    #[inline]
-    pub fn has_opened(&self) -> bool {
-        self.opened
-    }
-
     /// Where what comes next is put.
     #[inline]
     pub fn next(&mut self) -> &mut Carried {
         &mut self.slots[self.filled]
+    }
+
+    /// The same, and whether the shares of what has not opened are summed.
+    #[inline]
+    pub fn next_and_opened(&mut self) -> (&mut Carried, &mut bool) {
+        (&mut self.slots[self.filled], &mut self.opened)
     }
 
     /// Adds the particles of a slot, of which [`Sums::next`] has what they carry.

@@ -16,7 +16,7 @@ use crate::step::motion::{Motion, go_along, stays};
 use crate::step::shapes::Shapes;
 use crate::step::strain::Deformation;
 use crate::step::stress::{Booked, Points};
-use crate::step::sums::{Carried, add_to_stresses};
+use crate::step::sums::{Carried, add_to_closed, add_to_stresses};
 use crate::step::to_particles::{Kick, Pending};
 use crate::{Mat3, Vec3, tensor};
 
@@ -27,7 +27,7 @@ pub(super) enum Done {
     Nothing,
     /// Nothing: some have opened.
     NothingAsOpen,
-    /// All but Σ σ_p V_p and Σ V_p, and what has to be known for them is at hand: some may have left or opened.
+    /// All but Σ σ_p V_p and Σ V_p, and what has to be known for them is at hand: some may have left.
     AllButSums,
     All,
 }
@@ -53,6 +53,7 @@ for_each_simd! {
         booked: &mut Booked,
         stirred: &mut bool,
         carried: &mut Carried,
+        has_opened: &mut bool,
         sum: Option<&mut CellSums>,
     ) -> Done {
         let (start, count) = slot;
@@ -132,8 +133,19 @@ for_each_simd! {
         carried.mass = mass;
         let some_left = any(&*left);
 
-        if let (Some(sum), false) = (sum, some_left | advanced.open) {
+        if let (Some(sum), false) = (sum, some_left) {
+            if advanced.open && !*has_opened {
+                *has_opened = true;
+                (sum.solid, sum.closed) = (sum.volume, sum.volume);
+            }
             add_to_stresses(&stress, &volume, sum);
+            if *has_opened {
+                let (mut solid, mut closed) = (Lane::of(1.0), Lane::of(1.0));
+                if advanced.open {
+                    model.find_closed(&stress, &state, &mut solid, &mut closed);
+                }
+                add_to_closed([&solid, &closed], &volume, sum);
+            }
             return Done::All;
         }
         motion.come_to(x, left, some_left);

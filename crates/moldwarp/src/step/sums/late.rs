@@ -10,13 +10,11 @@ use crate::material::STATE_SIZE;
 use crate::parallel::Split;
 use crate::particles::Particles;
 use crate::simulation::Simulation;
-use crate::step::CellSums;
-use crate::step::corners::{Corners, NO_CORNERS, all_corners, load_nodes};
+use crate::step::corners::{NO_CORNERS, load_nodes};
 use crate::step::shapes::Shapes;
 use crate::step::state::Summed;
 use crate::step::strain;
 use crate::step::stress::Bodies;
-use crate::tensor;
 
 /// Particles side by side, as they lie in memory.
 struct Side {
@@ -158,7 +156,7 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
             sums.leave(asked.simd, tile, &mut records, nodes, pairs, &mut giving);
             if drifted {
                 load_nodes(asked.simd, &mut moved, nodes, &shared.moved);
-                half_work(asked.simd, &shapes, &moved, records.sum, &mut work);
+                strain::half_work(asked.simd, &shapes, &moved, records.sum, &mut work);
             }
         }
         lanes::sum(&work)
@@ -166,16 +164,5 @@ fn make(sim: &mut Simulation, from: usize, drifted: bool) -> f64 {
     match from {
         0 => cut.fold(all, &work),
         _ => work(all.split(from).1),
-    }
-}
-
-for_each_simd! {
-    /// Half the work of the particles' stresses on what the last drift has done to their cells, J.
-    fn half_work(shapes: &Shapes, moved: &Corners, sum: &CellSums, work: &mut Lane) {
-        for l in 0..LANES {
-            let gradient = strain::gradient(&shapes.gradients(l), all_corners(moved, l));
-            let strain = tensor::strain(&gradient);
-            work[l] += 0.5 * tensor::dot(&get(&sum.stress, l), &strain);
-        }
     }
 }
